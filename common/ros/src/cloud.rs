@@ -88,7 +88,6 @@ pub enum Cloud {
 
 impl Cloud {
     /// True if this is the schema of a point cloud in ROS 2.
-    #[must_use]
     pub fn is_schema(schema: &str) -> bool {
         schema == PointCloud2::SCHEMA || livox::SCHEMAS.contains(&schema)
     }
@@ -101,7 +100,6 @@ impl Cloud {
         }
     }
 
-    #[must_use]
     pub fn header(&self) -> &Header {
         match self {
             Cloud::Points(cloud) => &cloud.header,

@@ -22,7 +22,6 @@ pub struct CloudMount {
 
 impl CloudMount {
     /// Mount of a sensor at this pose in a frame of the robot whose z axis points up from the floor.
-    #[must_use]
     pub fn new(base_from_sensor: Isometry3<f64>) -> Self {
         let ahead = base_from_sensor.rotation * Vector3::x();
         let yaw = ahead.y.atan2(ahead.x);
@@ -35,7 +34,6 @@ impl CloudMount {
     }
 
     /// Mount of the level laser that stands for the lidar: at its place, with its heading.
-    #[must_use]
     pub fn planar(&self) -> Mount {
         let place = self.base_from_sensor.translation;
         Mount {
@@ -45,7 +43,6 @@ impl CloudMount {
     }
 
     /// Height of the lidar over the floor, in metres.
-    #[must_use]
     pub fn height_m(&self) -> f64 {
         self.base_from_sensor.translation.z
     }

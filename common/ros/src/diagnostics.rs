@@ -6,7 +6,6 @@ use crate::definition::Byte;
 use crate::{Header, Time};
 
 declare! {
-    /// `diagnostic_msgs/msg/DiagnosticStatus`.
     part DiagnosticStatus = "diagnostic_msgs/DiagnosticStatus" with "\
 byte OK=0
 byte WARN=1
@@ -22,7 +21,6 @@ byte STALE=3
         values: Vec<KeyValue>,
     }
 
-    /// `diagnostic_msgs/msg/KeyValue`.
     part KeyValue = "diagnostic_msgs/KeyValue" [] {
         key: String,
         value: String,
@@ -46,7 +44,6 @@ impl DiagnosticStatus {
 }
 
 /// Converts the health of a node and its last error; `stamp` is the time of the header.
-#[must_use]
 pub fn of(stamp: Time, report: &HealthHeader, error: &str) -> DiagnosticArray {
     let state = NodeState::from_code(report.state);
     let name = state.map_or_else(|| format!("state {}", report.state), |s| format!("{s:?}"));

@@ -69,14 +69,12 @@ declare! {
         z: f64,
     }
 
-    /// `geometry_msgs/msg/Pose`.
     #[derive(Copy)]
     part Pose = "geometry_msgs/Pose" [Point, Quaternion] {
         position: Point,
         orientation: Quaternion,
     }
 
-    /// `geometry_msgs/msg/PoseWithCovariance`.
     #[derive(Copy)]
     part PoseWithCovariance = "geometry_msgs/PoseWithCovariance" [Pose] {
         pose: Pose,
@@ -84,7 +82,6 @@ declare! {
         covariance: Rows6,
     }
 
-    /// `geometry_msgs/msg/Twist`.
     #[derive(Copy)]
     part Twist = "geometry_msgs/Twist" [Vector3] {
         /// Metres per second.
@@ -93,7 +90,6 @@ declare! {
         angular: Vector3,
     }
 
-    /// `geometry_msgs/msg/TwistWithCovariance`.
     #[derive(Copy)]
     part TwistWithCovariance = "geometry_msgs/TwistWithCovariance" [Twist] {
         twist: Twist,
@@ -124,7 +120,6 @@ impl Default for Quaternion {
 
 impl Quaternion {
     /// Rotation about the z axis, in radians.
-    #[must_use]
     pub fn from_yaw(yaw: f64) -> Self {
         let (sin, cos) = (0.5 * yaw).sin_cos();
         Quaternion {
@@ -168,7 +163,6 @@ impl Quaternion {
 
 impl Pose {
     /// Pose in the plane, at height 0.
-    #[must_use]
     pub fn from_planar(pose: geometry::Pose) -> Self {
         Pose {
             position: Point {
@@ -192,7 +186,6 @@ impl Pose {
 
 impl Transform {
     /// Transform in the plane, at height 0.
-    #[must_use]
     pub fn from_planar(pose: geometry::Pose) -> Self {
         Transform {
             translation: Vector3 {
@@ -207,7 +200,6 @@ impl Transform {
 
 impl PoseWithCovariance {
     /// Estimate in the plane, with its covariance row by row over x, y and yaw: m², m·rad, rad².
-    #[must_use]
     pub fn from_planar(pose: geometry::Pose, covariance: [f64; 9]) -> Self {
         let mut with = PoseWithCovariance {
             pose: Pose::from_planar(pose),
@@ -220,7 +212,6 @@ impl PoseWithCovariance {
     }
 
     /// Covariance row by row over x, y and yaw: m², m·rad, rad².
-    #[must_use]
     pub fn planar_covariance(&self) -> [f64; 9] {
         std::array::from_fn(|i| self.covariance[PLANAR_AXES[i / 3]][PLANAR_AXES[i % 3]])
     }
@@ -228,7 +219,6 @@ impl PoseWithCovariance {
 
 impl Twist {
     /// Motion in the plane: m/s, m/s and rad/s.
-    #[must_use]
     pub fn from_planar(motion: geometry::Pose) -> Self {
         Twist {
             linear: Vector3 {
@@ -245,7 +235,6 @@ impl Twist {
     }
 
     /// Projects the motion to the plane: m/s, m/s and rad/s.
-    #[must_use]
     pub fn planar(&self) -> geometry::Pose {
         geometry::Pose::new(self.linear.x, self.linear.y, self.angular.z)
     }

@@ -32,7 +32,6 @@ declare! {
 
 impl LaserScan {
     /// Converts a scan of the graph; `stamp` is the time of the header.
-    #[must_use]
     pub fn of(stamp: Time, scan: &ScanHeader, ranges: &[f32]) -> Self {
         let steps = ranges.len().saturating_sub(1) as f64;
         LaserScan {

@@ -1,7 +1,6 @@
 //! Names of a robot's lasers: in the graph by name, in ROS by the topic of their scans.
 
 /// Topic of a laser's scans; the only laser has an empty name.
-#[must_use]
 pub fn topic_of(laser: &str) -> String {
     match laser {
         "" => "/scan".to_owned(),
@@ -11,7 +10,6 @@ pub fn topic_of(laser: &str) -> String {
 
 /// Name of a laser by the topic of its scans: `front` for `/front/scan`, `/scan_front` and
 /// `/front_scan`, and `scan` if nothing else is left.
-#[must_use]
 pub fn name_of(topic: &str) -> String {
     let parts = topic.split('/').filter(|part| !part.is_empty());
     let parts: Vec<&str> = parts.filter(|part| *part != "scan").collect();

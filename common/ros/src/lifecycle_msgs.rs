@@ -3,22 +3,16 @@
 use super::Nothing;
 
 declare! {
-    /// `lifecycle_msgs/msg/State`.
-    #[derive(Eq)]
     part State = "lifecycle_msgs/State" [] {
         id: u8,
         label: String,
     }
 
-    /// `lifecycle_msgs/msg/Transition`.
-    #[derive(Eq)]
     part Transition = "lifecycle_msgs/Transition" [] {
         id: u8,
         label: String,
     }
 
-    /// `lifecycle_msgs/msg/TransitionDescription`.
-    #[derive(Eq)]
     part TransitionDescription = "lifecycle_msgs/TransitionDescription" [Transition, State] {
         transition: Transition,
         start_state: State,
@@ -26,7 +20,6 @@ declare! {
     }
 
     /// `lifecycle_msgs/msg/TransitionEvent`: a completed transition.
-    #[derive(Eq)]
     message TransitionEvent = "lifecycle_msgs/msg/TransitionEvent" [Transition, State] {
         /// Nanoseconds since 1970.
         timestamp: u64,
@@ -36,13 +29,12 @@ declare! {
     }
 
     /// Requests a transition: by label, or if that is empty, by id.
-    #[derive(Eq)]
     call ChangeStateRequest [Transition] {
         transition: Transition,
     }
 
     /// Result of the transition.
-    #[derive(Copy, Eq)]
+    #[derive(Copy)]
     call ChangeStateResponse [] {
         /// True if the node is in the goal state.
         success: bool,
@@ -52,14 +44,12 @@ declare! {
         ChangeStateRequest -> ChangeStateResponse;
 
     /// Current state.
-    #[derive(Eq)]
     call GetStateResponse [State] {
         current_state: State,
     }
 
     service GetState = "lifecycle_msgs/srv/GetState": Nothing -> GetStateResponse;
 
-    #[derive(Eq)]
     call GetAvailableStatesResponse [State] {
         available_states: Vec<State>,
     }
@@ -68,7 +58,6 @@ declare! {
         Nothing -> GetAvailableStatesResponse;
 
     /// Transitions from the current state, or all of them.
-    #[derive(Eq)]
     call GetAvailableTransitionsResponse [TransitionDescription] {
         available_transitions: Vec<TransitionDescription>,
     }

@@ -30,7 +30,6 @@ byte FATAL=50
 
 impl Log {
     /// Converts a log line of the graph; `stamp` is the time of the message.
-    #[must_use]
     pub fn of(stamp: Time, header: &LogHeader, text: &str) -> Self {
         Log {
             stamp,

@@ -22,7 +22,6 @@ pub fn frame(frame: &str) -> Result<FrameName, ConversionError> {
 
 /// Converts the header of a scan of the graph's only laser; `mount` is the mount of the laser on
 /// the base, if known.
-#[must_use]
 pub fn scan_header(scan: &LaserScan, frame: FrameName, mount: Option<Mount>) -> ScanHeader {
     let known = mount.unwrap_or_default();
     ScanHeader {

@@ -3,7 +3,6 @@
 use super::{Header, Nothing, Pose, PoseWithCovarianceStamped};
 
 declare! {
-    /// `nav2_msgs/msg/Particle`.
     #[derive(Copy)]
     part Particle = "nav2_msgs/Particle" [Pose] {
         pose: Pose,
@@ -11,7 +10,6 @@ declare! {
         weight: f64,
     }
 
-    /// `nav2_msgs/msg/ParticleCloud`.
     message ParticleCloud = "nav2_msgs/msg/ParticleCloud" [Header, Particle] {
         /// Time, and the frame of the poses.
         header: Header,

@@ -6,7 +6,6 @@ use messages::{FieldHeader, MapHeader};
 use super::{ConversionError, Header, Pose, Time, planar};
 
 declare! {
-    /// `nav_msgs/msg/MapMetaData`.
     part MapMetaData = "nav_msgs/MapMetaData" [Pose] {
         /// Time at which the map was loaded.
         map_load_time: Time,
@@ -47,7 +46,6 @@ impl OccupancyGridMsg {
     }
 
     /// Converts a grid to a message with an empty header.
-    #[must_use]
     pub fn from_grid(grid: &OccupancyGrid) -> Self {
         let origin = Pose::from_planar(grid.map_from_grid);
         let sides = (grid.width, grid.height);
@@ -55,7 +53,6 @@ impl OccupancyGridMsg {
     }
 
     /// Converts a map of the graph to a message with an empty header and load time.
-    #[must_use]
     pub fn of_map(map: &MapHeader, cells: &[u8]) -> Self {
         let origin = planar::pose(map.map_from_grid.into());
         Self::of_cells(map.resolution_m, (map.width, map.height), origin, cells)
@@ -83,7 +80,6 @@ impl OccupancyGridMsg {
 
     /// Converts an intensity field of the graph to percentages of the intensity that a pose would
     /// have if every beam agreed.
-    #[must_use]
     pub fn of_field(header: Header, field: &FieldHeader, items: &[u16], map: &MapHeader) -> Self {
         let full = field.highest_possible.max(1);
         let percent = |&item: &u16| (u32::from(item) * 100 / full).min(100) as i8;

@@ -18,7 +18,6 @@ declare! {
 
 impl Odometry {
     /// Converts odometry of the graph; `stamp` is the time of the header.
-    #[must_use]
     pub fn of(stamp: Time, odometry: &messages::Odometry) -> Self {
         Odometry {
             header: Header::new(stamp, odometry.frame.as_str()),

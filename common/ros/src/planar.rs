@@ -20,19 +20,16 @@ fn rounded(yaw: f64) -> f64 {
 }
 
 /// Converts a pose, at height 0.
-#[must_use]
 pub fn pose(pose: Pose) -> ros::Pose {
     ros::Pose::from_planar(Pose::new(pose.x, pose.y, rounded(pose.yaw)))
 }
 
 /// Pose that a reader of the recording gets: the given one, with its yaw off by less than a step.
-#[must_use]
 pub fn as_recorded(of: Pose) -> Pose {
     pose(of).planar().unwrap_or(of)
 }
 
 /// Converts an estimate with its covariance over x, y and yaw.
-#[must_use]
 pub fn estimate(of: Pose, covariance: [f64; 9]) -> ros::PoseWithCovariance {
     ros::PoseWithCovariance {
         pose: pose(of),
@@ -41,14 +38,12 @@ pub fn estimate(of: Pose, covariance: [f64; 9]) -> ros::PoseWithCovariance {
 }
 
 /// Converts a transform, at height 0.
-#[must_use]
 pub fn transform(pose: Pose) -> ros::Transform {
     ros::Transform::from_planar(Pose::new(pose.x, pose.y, rounded(pose.yaw)))
 }
 
 /// Transform of a laser that is mounted upside down: `level`, its frame seen from above, rolled by
 /// half a turn about its x axis.
-#[must_use]
 pub fn upside_down(level: ros::Transform) -> ros::Transform {
     let turn = level.rotation;
     ros::Transform {

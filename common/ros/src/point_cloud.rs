@@ -12,7 +12,6 @@ use super::{ConversionError, Header};
 
 declare! {
     /// A field of each point.
-    #[derive(Eq)]
     part PointField = "sensor_msgs/PointField" with "\
 uint8 INT8=1
 uint8 UINT8=2

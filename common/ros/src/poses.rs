@@ -11,7 +11,6 @@ use crate::{Header, PoseArray, PoseWithCovarianceStamped};
 
 /// Converts all hypotheses on the map of the best one, best first: poses of the base, or of the
 /// laser if no mount is known.
-#[must_use]
 pub fn array(header: Header, from: &HypothesesHeader, items: &[Hypothesis]) -> PoseArray {
     let pose = |item| planar::pose(robot(from, item));
     PoseArray {
@@ -22,7 +21,6 @@ pub fn array(header: Header, from: &HypothesesHeader, items: &[Hypothesis]) -> P
 
 /// Converts the initial particles of a particle filter: poses of the base, or of the laser if no
 /// mount is known.
-#[must_use]
 pub fn particles(header: Header, items: &[Particle]) -> PoseArray {
     let pose = |item: &Particle| planar::pose(item.map_from_base.into());
     PoseArray {
@@ -34,7 +32,6 @@ pub fn particles(header: Header, items: &[Particle]) -> PoseArray {
 /// Converts the best hypothesis. It keeps its own covariance only if the verdict is Unique, so that
 /// no reader takes an uncertain pose as certain: if several places fit, the covariance spans them
 /// with equal weight; if none fits, the robot may be anywhere.
-#[must_use]
 pub fn best(
     header: Header,
     from: &HypothesesHeader,
@@ -77,7 +74,6 @@ fn spread(about: Pose, from: &HypothesesHeader, items: &[Hypothesis]) -> Covaria
 
 /// Converts the tracker's pose: of the base, or of the laser if no mount is known. `None` if it
 /// believes no place.
-#[must_use]
 pub fn tracked(header: Header, from: &PoseHeader) -> Option<PoseWithCovarianceStamped> {
     if !from.is_believed() {
         return None;
@@ -93,7 +89,6 @@ pub fn tracked(header: Header, from: &PoseHeader) -> Option<PoseWithCovarianceSt
 }
 
 /// Pose of the base, or of the laser if no mount is known.
-#[must_use]
 pub fn robot(from: &HypothesesHeader, item: &Hypothesis) -> Pose {
     match from.mount_known {
         0 => item.map_from_laser.into(),

@@ -22,7 +22,6 @@ pub enum ParameterType {
 
 impl ParameterType {
     /// Returns the type with this number, if there is one.
-    #[must_use]
     pub fn from_code(code: u8) -> Option<Self> {
         [
             Self::NotSet,
@@ -57,14 +56,12 @@ declare! {
         string_array_value: Vec<String>,
     }
 
-    /// `rcl_interfaces/msg/Parameter`.
     part Parameter = "rcl_interfaces/Parameter" [ParameterValue] {
         /// Name; dots separate its levels.
         name: String,
         value: ParameterValue,
     }
 
-    /// `rcl_interfaces/msg/ParameterDescriptor`.
     part ParameterDescriptor = "rcl_interfaces/ParameterDescriptor"
         [FloatingPointRange, IntegerRange] {
         name: String,
@@ -83,7 +80,6 @@ declare! {
         integer_range: AtMostOne<IntegerRange>,
     }
 
-    /// `rcl_interfaces/msg/FloatingPointRange`.
     #[derive(Copy)]
     part FloatingPointRange = "rcl_interfaces/FloatingPointRange" [] {
         from_value: f64,
@@ -92,8 +88,7 @@ declare! {
         step: f64,
     }
 
-    /// `rcl_interfaces/msg/IntegerRange`.
-    #[derive(Copy, Eq)]
+    #[derive(Copy)]
     part IntegerRange = "rcl_interfaces/IntegerRange" [] {
         from_value: i64,
         to_value: i64,
@@ -101,8 +96,6 @@ declare! {
         step: u64,
     }
 
-    /// `rcl_interfaces/msg/SetParametersResult`.
-    #[derive(Eq)]
     part SetParametersResult = "rcl_interfaces/SetParametersResult" [] {
         /// True if the parameter was set.
         successful: bool,
@@ -110,8 +103,6 @@ declare! {
         reason: String,
     }
 
-    /// `rcl_interfaces/msg/ListParametersResult`.
-    #[derive(Eq)]
     part ListParametersResult = "rcl_interfaces/ListParametersResult" [] {
         names: Vec<String>,
         /// Prefixes of the names, up to their last dots.
@@ -129,7 +120,6 @@ declare! {
     }
 
     /// Request of several services: names of parameters.
-    #[derive(Eq)]
     call ParameterNames [] {
         names: Vec<String>,
     }
@@ -148,7 +138,6 @@ declare! {
         ParameterNames -> GetParametersResponse;
 
     /// Types of parameters, in the order of the request.
-    #[derive(Eq)]
     call GetParameterTypesResponse [] {
         /// Values of [`ParameterType`].
         types: Vec<u8>,
@@ -158,7 +147,6 @@ declare! {
         ParameterNames -> GetParameterTypesResponse;
 
     /// Result for each parameter, in the order of the request.
-    #[derive(Eq)]
     call SetParametersResponse [SetParametersResult] {
         results: Vec<SetParametersResult>,
     }
@@ -167,7 +155,6 @@ declare! {
         SetParametersRequest -> SetParametersResponse;
 
     /// Result for all parameters: either all are set or none.
-    #[derive(Eq)]
     call SetParametersAtomicallyResponse [SetParametersResult] {
         result: SetParametersResult,
     }
@@ -176,7 +163,6 @@ declare! {
         SetParametersRequest -> SetParametersAtomicallyResponse;
 
     /// Request for names of parameters.
-    #[derive(Eq)]
     call ListParametersRequest [] {
         /// Prefixes of the names, up to a dot; empty for all parameters.
         prefixes: Vec<String>,
@@ -184,7 +170,6 @@ declare! {
         depth: u64,
     }
 
-    #[derive(Eq)]
     call ListParametersResponse [ListParametersResult] {
         result: ListParametersResult,
     }

@@ -13,7 +13,6 @@ declare! {
         pose: PoseWithCovariance,
     }
 
-    /// `geometry_msgs/msg/TransformStamped`.
     part TransformStamped = "geometry_msgs/TransformStamped" [Header, Transform] {
         /// Time, and the parent frame.
         header: Header,
@@ -51,7 +50,6 @@ impl RosMessage for PoseWithCovarianceStamped {
 
 impl PoseStamped {
     /// Converts a true pose of the graph; `stamp` is the time of the header.
-    #[must_use]
     pub fn of(stamp: Time, truth: &GroundTruth) -> Self {
         PoseStamped {
             header: Header::new(stamp, truth.frame.as_str()),

@@ -8,21 +8,19 @@ declare! {
     }
 
     /// Time since 1970.
-    #[derive(Copy, Eq)]
+    #[derive(Copy)]
     part Time = "builtin_interfaces/Time" [] {
         sec: i32,
         /// Nanoseconds within the second.
         nanosec: u32,
     }
 
-    /// `std_msgs/msg/String`.
-    #[derive(Eq)]
     message Text = "std_msgs/msg/String" [] {
         data: String,
     }
 
     /// `rosgraph_msgs/msg/Clock`: time of a simulation.
-    #[derive(Copy, Eq)]
+    #[derive(Copy)]
     message Clock = "rosgraph_msgs/msg/Clock" [Time] {
         clock: Time,
     }
@@ -44,7 +42,6 @@ declare! {
 }
 
 impl Header {
-    #[must_use]
     pub fn new(stamp: Time, frame: &str) -> Self {
         Header {
             stamp,
@@ -55,13 +52,11 @@ impl Header {
 
 impl Time {
     /// Nanoseconds since 1970; seconds of 32 bits always fit.
-    #[must_use]
     pub fn as_ns(self) -> i64 {
         i64::from(self.sec) * 1_000_000_000 + i64::from(self.nanosec)
     }
 
     /// Converts nanoseconds since 1970; `None` if the seconds do not fit 32 bits.
-    #[must_use]
     pub fn from_ns(ns: i64) -> Option<Self> {
         Some(Time {
             sec: i32::try_from(ns.div_euclid(1_000_000_000)).ok()?,

@@ -4,7 +4,6 @@ use super::Pose2D;
 use crate::Header;
 
 declare! {
-    /// `backcast_msgs/msg/Beam`.
     #[derive(Copy)]
     part Beam = "backcast_msgs/Beam" with "\
 uint32 HIT=0
@@ -34,7 +33,6 @@ uint32 NO_RETURN=4
 
 impl Beams {
     /// Converts the beams of a scan of the graph, without loss.
-    #[must_use]
     pub fn of(header: Header, from: &messages::BeamsHeader, items: &[messages::Beam]) -> Self {
         let beam = |beam: &messages::Beam| Beam {
             bearing: beam.bearing,

@@ -5,7 +5,6 @@ use crate::Header;
 use crate::definition::Rows3;
 
 declare! {
-    /// `backcast_msgs/msg/Hypothesis`.
     #[derive(Copy)]
     part Hypothesis = "backcast_msgs/Hypothesis" [Pose2D] {
         map_from_laser: Pose2D,
@@ -46,7 +45,6 @@ uint32 POOR_FIT=3
 impl Hypotheses {
     /// Converts the hypotheses of a scan of the graph; if several maps were searched, only those on
     /// the map of the best one.
-    #[must_use]
     pub fn of(
         header: Header,
         from: &messages::HypothesesHeader,

@@ -22,7 +22,6 @@ pub struct Localization {
 
 impl Localization {
     /// Converts the tracker's result for a scan, with its text.
-    #[must_use]
     pub fn of(header: Header, from: &PoseHeader, words: &[u8]) -> Self {
         // Without a mount only the laser's pose is known, which is not the robot's.
         let pose = from
@@ -44,7 +43,6 @@ impl Localization {
 }
 
 /// Id of the map as 16 hexadecimal digits; empty if there is no map.
-#[must_use]
 pub fn map_id(from: &PoseHeader) -> String {
     match from.map_id {
         0 => String::new(),

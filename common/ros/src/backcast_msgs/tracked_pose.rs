@@ -50,7 +50,6 @@ uint32 NO_PLACE=8
 
 impl TrackedPose {
     /// Converts the tracker's pose of the graph, with its text.
-    #[must_use]
     pub fn of(header: Header, from: &messages::PoseHeader, words: &[u8]) -> Self {
         TrackedPose {
             header,

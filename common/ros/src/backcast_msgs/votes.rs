@@ -4,8 +4,7 @@ use super::Pose2D;
 use crate::Header;
 
 declare! {
-    /// `backcast_msgs/msg/Vote`.
-    #[derive(Copy, Eq)]
+    #[derive(Copy)]
     part Vote = "backcast_msgs/Vote" [] {
         x: u16,
         y: u16,
@@ -52,7 +51,6 @@ uint32 REFUSED=2
 
 impl Votes {
     /// Converts the votes of a scan of the graph; `map` gives the thresholds of occupancy.
-    #[must_use]
     pub fn of(
         header: Header,
         (votes, items): (&messages::VotesHeader, &[messages::Vote]),
