@@ -33,12 +33,8 @@ pub trait Listener {
 pub struct Inputs {
     map: Subscriber<topic::Map>,
     odometry: Subscriber<topic::OdometryTopic>,
-    odometry_gaps: RefCell<GapCounter>,
     truths: Subscriber<topic::GroundTruthTopic>,
-    truth_gaps: RefCell<GapCounter>,
     scans: Subscriber<topic::Scan>,
-    /// By laser, because each laser counts its own scans.
-    scan_gaps: RefCell<BTreeMap<String, GapCounter>>,
     votes: Subscriber<topic::Votes>,
     field: Option<Subscriber<topic::Field>>,
     hypotheses: Subscriber<topic::Hypotheses>,
@@ -47,8 +43,8 @@ pub struct Inputs {
     beams: Subscriber<topic::Beams>,
     health: Subscriber<topic::Health>,
     log: Subscriber<topic::Log>,
-    /// By process, because each process counts its own lines.
-    log_gaps: RefCell<BTreeMap<u32, GapCounter>>,
+    /// By who counts: each laser counts its own scans, and each process its own lines.
+    gaps: RefCell<BTreeMap<String, GapCounter>>,
 }
 
 impl Inputs {
@@ -58,11 +54,8 @@ impl Inputs {
         Ok(Inputs {
             map: graph.subscriber()?,
             odometry: graph.subscriber()?,
-            odometry_gaps: RefCell::default(),
             truths: graph.subscriber()?,
-            truth_gaps: RefCell::default(),
             scans: graph.subscriber()?,
-            scan_gaps: RefCell::default(),
             votes: graph.subscriber()?,
             field: field.then(|| graph.subscriber()).transpose()?,
             hypotheses: graph.subscriber()?,
@@ -71,7 +64,7 @@ impl Inputs {
             beams: graph.subscriber()?,
             health: graph.subscriber()?,
             log: graph.subscriber()?,
-            log_gaps: RefCell::default(),
+            gaps: RefCell::default(),
         })
     }
 
@@ -107,33 +100,26 @@ impl Inputs {
             to.transcript().taken(0, outcome)?;
             to.reported(header)?;
         }
-        let lost = |line: &LogHeader| {
-            let mut gaps = self.log_gaps.borrow_mut();
-            gaps.entry(line.pid).or_default().lost_before(line.counter)
-        };
+        let lost = |line: &LogHeader| self.lost(format!("log {}", line.pid), line.counter);
         take_each(&self.log, to, lost, Entries::log)
     }
 
+    fn lost(&self, by: String, counter: u64) -> u64 {
+        let mut gaps = self.gaps.borrow_mut();
+        gaps.entry(by).or_default().lost_before(counter)
+    }
+
     fn take_measurements<L: Listener>(&self, to: &mut L) -> Result<(), L::Error> {
-        let lost = |odometry: &Odometry| {
-            let mut gaps = self.odometry_gaps.borrow_mut();
-            gaps.lost_before(odometry.stamp.counter)
-        };
+        let lost = |odometry: &Odometry| self.lost("odometry".into(), odometry.stamp.counter);
         take_each(&self.odometry, to, lost, |entries, odometry, _| {
             entries.odometry(odometry)
         })?;
-        let lost = |truth: &GroundTruth| {
-            let mut gaps = self.truth_gaps.borrow_mut();
-            gaps.lost_before(truth.stamp.counter)
-        };
+        let lost = |truth: &GroundTruth| self.lost("truth".into(), truth.stamp.counter);
         take_each(&self.truths, to, lost, |entries, truth, _| {
             entries.ground_truth(truth)
         })?;
-        let lost = |scan: &ScanHeader| {
-            let mut gaps = self.scan_gaps.borrow_mut();
-            let gaps = gaps.entry(scan.laser.to_string()).or_default();
-            gaps.lost_before(scan.stamp.counter)
-        };
+        let lost =
+            |scan: &ScanHeader| self.lost(format!("scan {}", scan.laser), scan.stamp.counter);
         take_each(&self.scans, to, lost, Entries::scan)
     }
 

@@ -21,7 +21,7 @@ use super::transforms;
 /// Number of odometry samples that are kept for the hypotheses of a scan.
 const KEPT: usize = 256;
 
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub(super) struct Frames {
     map: String,
     base: String,
@@ -43,9 +43,7 @@ impl Frames {
         Frames {
             map: map.to_owned(),
             base: base.to_owned(),
-            laser: None,
-            mounts: Vec::new(),
-            odometry: VecDeque::with_capacity(KEPT),
+            ..Frames::default()
         }
     }
 

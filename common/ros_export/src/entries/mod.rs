@@ -38,7 +38,7 @@ pub enum Entry {
     Metadata(&'static str, BTreeMap<String, String>),
 }
 
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub struct Entries {
     frames: Frames,
     map_frame: String,
@@ -58,13 +58,7 @@ impl Entries {
         Entries {
             frames: Frames::new(&options.map_frame, &options.base_frame),
             map_frame: options.map_frame.clone(),
-            newest: None,
-            map: None,
-            waiting_map: None,
-            waiting_health: VecDeque::new(),
-            waiting_log: VecDeque::new(),
-            is_tracked: false,
-            made: Vec::new(),
+            ..Entries::default()
         }
     }
 
