@@ -136,11 +136,15 @@ impl Frames {
                 "the mount"
             );
         }
+        self.keep(key, mount);
+        Ok(mount)
+    }
+
+    fn keep(&mut self, key: (usize, String), mount: Option<Mount>) {
         if self.mounts.len() >= MAX_MOUNTS {
             self.mounts.clear();
         }
         self.mounts.insert(key, mount);
-        Ok(mount)
     }
 
     /// Returns the mount of a lidar with this frame: the given one, or that of the transforms. Its
@@ -155,11 +159,7 @@ impl Frames {
         let mount = mount.ok_or_else(|| GatewayError::NoCloudMount {
             frame: lidar.to_owned(),
         })?;
-        if self.mounts.len() >= MAX_MOUNTS {
-            self.mounts.clear();
-        }
-        self.mounts
-            .insert((0, lidar.to_owned()), Some(mount.planar()));
+        self.keep((0, lidar.to_owned()), Some(mount.planar()));
         Ok(mount)
     }
 

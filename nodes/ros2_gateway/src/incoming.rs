@@ -16,7 +16,7 @@ use crate::config::Brought;
 use crate::frames::Frames;
 use crate::joined::Joined;
 use crate::outlet::Outlet;
-use crate::rmw::{Keeping, Member, Subscription, Watch};
+use crate::rmw::{Keeping, Member, Subscription, Watch, take};
 use crate::role::Role;
 use crate::seeding::Belief;
 use crate::{GatewayError, Seed};
@@ -63,12 +63,7 @@ impl Incoming {
         watch: &mut Watch,
         sent: Sent,
     ) -> Result<Self, GatewayError> {
-        let Joined {
-            member,
-            config,
-            topics,
-            ..
-        } = joined;
+        let (member, config, topics) = (joined.member, joined.config, joined.topics);
         let mut open = Opening { member, watch };
         let brings = |topic| config.brings(topic);
         let odometry = brings(Brought::Odometry);
@@ -219,35 +214,4 @@ impl Opening<'_> {
             .then(|| self.subscribe(topic, keeping, depth, max_bytes))
             .transpose()
     }
-}
-
-/// Passes queued messages to `each`, if there is a subscription, and counts rejected ones; fails only
-/// if the graph fails.
-pub(crate) fn take<M: RosMessage + DeserializeOwned>(
-    subscription: Option<&mut Subscription<M>>,
-    report: &mut Report,
-    mut each: impl FnMut(M, &mut Report) -> Result<(), GatewayError>,
-) -> Result<(), TransportError> {
-    let Some(subscription) = subscription else {
-        return Ok(());
-    };
-    report.dropped(subscription.dropped());
-    for _ in 0..subscription.depth() {
-        let Some(received) = subscription.next() else {
-            break;
-        };
-        report.received();
-        report.dropped(received.lost);
-        match received.message.and_then(|message| each(message, report)) {
-            Ok(()) => {}
-            // A map that does not fit into shared memory is rejected.
-            Err(GatewayError::Transport(error))
-                if !matches!(error, TransportError::SharedMemoryFull { .. }) =>
-            {
-                return Err(error);
-            }
-            Err(error) => report.refused(&error)?,
-        }
-    }
-    Ok(())
 }

@@ -1,7 +1,7 @@
 //! Both sides that are joined: the graph with its results, and the robot's domain.
 
 use messages::topic;
-use transport::{Graph, Subscriber, TransportError};
+use transport::{Graph, Input, Subscriber, TransportError};
 
 use crate::Config;
 use crate::rmw::Member;
@@ -29,5 +29,9 @@ impl Results {
             poses: graph.subscriber()?,
             health: graph.subscriber()?,
         })
+    }
+
+    pub(crate) fn all(&self) -> [&dyn Input; 3] {
+        [&self.hypotheses, &self.poses, &self.health]
     }
 }

@@ -35,12 +35,7 @@ pub(crate) struct Outgoing {
 
 impl Outgoing {
     pub(crate) fn open(joined: Joined<'_>, sent: Sent) -> Result<Self, GatewayError> {
-        let Joined {
-            member,
-            config,
-            topics,
-            ..
-        } = joined;
+        let (member, config, topics) = (joined.member, joined.config, joined.topics);
         let broadcaster = config
             .broadcast_tf
             .then(|| Broadcaster::open(member, &topics.tf, sent));

@@ -60,12 +60,7 @@ fn seed(graph: &Graph, config: &Config) -> Result<(), GatewayError> {
     let mut gateway = Gateway::open(joined, mounts)?;
     tracing::info!(domain, node = config.node(), "joined the robot's domain");
     let results = Results::open(graph)?;
-    let Results {
-        hypotheses,
-        poses,
-        health,
-    } = &results;
-    graph.run(&[hypotheses, poses, health], TICK, |_| {
+    graph.run(&results.all(), TICK, |_| {
         gateway.step(&results, &mut report)?;
         let taken = Taken {
             incoming: &gateway.incoming,
@@ -92,12 +87,7 @@ struct Gateway<'a> {
 
 impl<'a> Gateway<'a> {
     fn open(joined: Joined<'a>, mounts: Vec<Mount>) -> Result<Self, GatewayError> {
-        let Joined {
-            member,
-            config,
-            topics,
-            ..
-        } = joined;
+        let (member, config, topics) = (joined.member, joined.config, joined.topics);
         // Publishers are opened before the watch, so that they exist when a subscriber is seen.
         let sent = Sent::default();
         let outgoing = Outgoing::open(joined, sent.clone())?;

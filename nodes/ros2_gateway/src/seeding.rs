@@ -80,11 +80,6 @@ impl Seeding {
         self.wanted = Some(Reason::Asked);
     }
 
-    #[cfg(test)]
-    fn is_wanted(&self) -> bool {
-        self.wanted.is_some()
-    }
-
     pub(crate) fn on_belief(&mut self, belief: Belief) {
         // Poses from before the initial pose do not count.
         if self.when != Seed::Lost || belief.measured_ns <= self.seeded_ns {
@@ -200,7 +195,7 @@ mod tests {
         assert_eq!(answer(&mut seeding, 100, true, &[1.0]), None);
         // This one comes before its answer does.
         seeding.on_belief(belief(200, 9.0));
-        assert!(!seeding.is_wanted());
+        assert!(seeding.wanted.is_none());
         assert_eq!(answer(&mut seeding, 200, true, &[1.0]), Some(Reason::Lost));
         // Poses from before the initial pose do not count.
         seeding.on_belief(belief(200, 9.0));
@@ -215,7 +210,7 @@ mod tests {
             assert_eq!(answer(&mut seeding, ms, ms % 200 == 0, &[1.0, 20.0]), None);
             seeding.on_belief(belief(ms, if ms % 200 == 0 { 20.0 } else { 9.0 }));
         }
-        assert!(!seeding.is_wanted());
+        assert!(seeding.wanted.is_none());
         // Turned around at the right place.
         answer(&mut seeding, 2000, true, &[1.0]);
         for _ in 0..2 {
@@ -223,10 +218,10 @@ mod tests {
             turned.map_from_base.yaw = 3.0;
             seeding.on_belief(turned);
         }
-        assert!(seeding.is_wanted());
+        assert!(seeding.wanted.is_some());
         // It recovered by itself, or a user moved it there.
         seeding.on_belief(belief(2000, 1.0));
-        assert!(!seeding.is_wanted());
+        assert!(seeding.wanted.is_none());
     }
 
     #[test]
@@ -235,7 +230,7 @@ mod tests {
         answer(&mut seeding, 1000, true, &[1.0]);
         seeding.on_belief(belief(700, 9.0));
         seeding.on_belief(belief(600, 9.0));
-        assert!(!seeding.is_wanted());
+        assert!(seeding.wanted.is_none());
     }
 
     #[test]
@@ -244,7 +239,7 @@ mod tests {
         answer(&mut seeding, 0, true, &[1.0]);
         seeding.on_belief(belief(0, 9.0));
         seeding.on_belief(belief(0, 9.0));
-        assert!(!seeding.is_wanted());
+        assert!(seeding.wanted.is_none());
     }
 
     #[test]
@@ -255,6 +250,6 @@ mod tests {
         assert_eq!(answer(&mut seeding, 0, true, &[1.0]), None);
         seeding.on_belief(belief(0, 9.0));
         seeding.on_belief(belief(0, 9.0));
-        assert!(seeding.is_wanted());
+        assert!(seeding.wanted.is_some());
     }
 }

@@ -25,15 +25,9 @@ const SET_BACK_NS: i64 = 2_000_000_000;
 
 /// Rejects times that are not later than the last one: transform buffers treat an older one as an
 /// error.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct Forward {
-    last_ns: i64,
-}
-
-impl Default for Forward {
-    fn default() -> Self {
-        Forward { last_ns: i64::MIN }
-    }
+    last_ns: Option<i64>,
 }
 
 impl Forward {
@@ -49,12 +43,12 @@ impl Forward {
 
     /// True if the time, nanoseconds, is later than the last one, or the clock was set back.
     pub(crate) fn is_later(&self, at_ns: i64) -> bool {
-        let behind_ns = self.last_ns.saturating_sub(at_ns);
-        !(0..=SET_BACK_NS).contains(&behind_ns)
+        let is_behind = |last_ns: i64| (0..=SET_BACK_NS).contains(&last_ns.saturating_sub(at_ns));
+        !self.last_ns.is_some_and(is_behind)
     }
 
     pub(crate) fn note(&mut self, at_ns: i64) {
-        self.last_ns = at_ns;
+        self.last_ns = Some(at_ns);
     }
 }
 

@@ -2,7 +2,7 @@
 
 mod parts;
 
-use messages::InitialPose;
+use messages::{InitialPose, InitialPoseKind};
 use transport::TransportError;
 use zenoh_session::Report;
 
@@ -99,8 +99,8 @@ impl<'a> Body<'a> {
         let is_again = is_first || parameters.is_on("always_reset_initial_pose");
         let is_said = parameters.is_on("set_initial_pose") && is_again;
         is_said.then(|| {
-            let pose = hint::of_parameters(parameters.initial_pose());
-            hint::of_kind(self.joined.config.amcl.kind(), pose)
+            let kind = self.joined.config.amcl.kind();
+            hint::of_parameters(kind, parameters.initial_pose())
         })
     }
 
@@ -116,7 +116,7 @@ impl<'a> Body<'a> {
                     %file,
                     "the saved pose is tried first, and a scan must confirm it"
                 );
-                Some(hint::of_parameters(pose))
+                Some(hint::of_parameters(InitialPoseKind::Hint, pose))
             }
             Ok(None) => {
                 tracing::info!(%file, "there is no saved pose: the whole map is searched");

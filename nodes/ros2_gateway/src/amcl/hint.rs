@@ -17,6 +17,7 @@ const LEAST: (f64, f64) = (0.1, 0.05);
 
 /// Converts the pose of a message, moved on by the robot's motion since its stamp.
 pub(super) fn of_message(
+    kind: InitialPoseKind,
     message: &PoseWithCovarianceStamped,
     map_frame: &str,
     moved_since: impl FnOnce(i64) -> Option<Pose>,
@@ -38,7 +39,7 @@ pub(super) fn of_message(
             measured_ns: said_ns,
             ..Stamp::default()
         },
-        kind: InitialPoseKind::Hint as u64,
+        kind: kind as u64,
         map_from_base: now.into(),
         covariance: covariance
             .carried(pose, Pose::new(now.x, now.y, pose.yaw))
@@ -47,19 +48,12 @@ pub(super) fn of_message(
 }
 
 /// Converts a pose of the parameters or of the saved file.
-pub(super) fn of_parameters(pose: Pose) -> InitialPose {
+pub(super) fn of_parameters(kind: InitialPoseKind, pose: Pose) -> InitialPose {
     InitialPose {
         stamp: Stamp::default(),
-        kind: InitialPoseKind::Hint as u64,
+        kind: kind as u64,
         map_from_base: pose.into(),
         covariance: unsaid().to_rows(),
-    }
-}
-
-pub(super) fn of_kind(kind: InitialPoseKind, pose: InitialPose) -> InitialPose {
-    InitialPose {
-        kind: kind as u64,
-        ..pose
     }
 }
 
@@ -108,12 +102,16 @@ mod tests {
         message
     }
 
+    fn hint(message: &PoseWithCovarianceStamped) -> Result<InitialPose, GatewayError> {
+        of_message(InitialPoseKind::Hint, message, "map", |_| None)
+    }
+
     #[test]
     fn a_pose_is_carried_on_by_what_the_robot_moved() {
         let mut message = said("/map");
         message.header.stamp.sec = 7;
         let moved = |ns| (ns == 7_000_000_000).then(|| Pose::new(1.0, 0.0, 0.5));
-        let hint = of_message(&message, "map", moved).unwrap();
+        let hint = of_message(InitialPoseKind::Hint, &message, "map", moved).unwrap();
         let expected = Pose::new(2.0, 1.0, std::f64::consts::FRAC_PI_2 + 0.5);
         assert!(Pose::from(hint.map_from_base).is_within(expected, 1e-12, 1e-12));
         // The message has no covariance.
@@ -123,9 +121,7 @@ mod tests {
     #[test]
     fn another_frame_is_refused_by_name() {
         for frame in ["odom", "", "map2"] {
-            let error = of_message(&said(frame), "map", |_| None)
-                .unwrap_err()
-                .to_string();
+            let error = hint(&said(frame)).unwrap_err().to_string();
             assert!(
                 error.contains(&format!("{frame:?}")) && error.contains("\"map\""),
                 "{error}"
@@ -138,18 +134,16 @@ mod tests {
         let mut message = said("map");
         message.pose.covariance[0][0] = 1e-9;
         message.pose.covariance[5][5] = 0.5;
-        let hint = of_message(&message, "map", |_| None).unwrap();
-        assert_eq!([hint.covariance[0], hint.covariance[8]], [0.1 * 0.1, 0.5]);
+        let found = hint(&message).unwrap().covariance;
+        assert_eq!([found[0], found[8]], [0.1 * 0.1, 0.5]);
         for wrong in [f64::NAN, -1.0, f64::INFINITY] {
             message.pose.covariance[1][1] = wrong;
-            let error = of_message(&message, "map", |_| None)
-                .unwrap_err()
-                .to_string();
+            let error = hint(&message).unwrap_err().to_string();
             assert!(error.contains("covariance"), "{error}");
         }
         message.pose.covariance[1][1] = 1.0;
         message.pose.covariance[0][1] = 5.0;
         message.pose.covariance[1][0] = 5.0;
-        assert!(of_message(&message, "map", |_| None).is_err());
+        assert!(hint(&message).is_err());
     }
 }

@@ -9,9 +9,9 @@ use zenoh_session::Report;
 use super::hint;
 use crate::GatewayError;
 use crate::frames::Frames;
-use crate::incoming::{MAX_BYTES, take};
+use crate::incoming::MAX_BYTES;
 use crate::joined::Joined;
-use crate::rmw::{Keeping, Service, Subscription, Watch};
+use crate::rmw::{Keeping, Service, Subscription, Watch, take};
 
 pub(super) struct Hints {
     initial_poses: Subscription<PoseWithCovarianceStamped>,
@@ -49,13 +49,13 @@ impl Hints {
     ) -> Result<(), TransportError> {
         let kind = self.kind;
         let said = |message: &PoseWithCovarianceStamped| -> Result<InitialPose, GatewayError> {
-            let pose = hint::of_message(message, map_frame, |ns| frames.moved_since(ns))?;
+            let pose = hint::of_message(kind, message, map_frame, |ns| frames.moved_since(ns))?;
             let how = match kind {
                 InitialPoseKind::Believed => "it is believed",
                 _ => "it is tried first, and a scan must confirm it",
             };
             tracing::info!("an initial pose came: {how}");
-            Ok(hint::of_kind(kind, pose))
+            Ok(pose)
         };
         take(Some(&mut self.initial_poses), report, |message, _| {
             *pending = Some(said(&message)?);

@@ -77,16 +77,11 @@ pub(crate) fn run(graph: &Graph, config: &Config, tick: Duration) -> Result<(), 
     };
     let mut body = Body::new(joined);
     let results = Results::open(graph)?;
-    let Results {
-        hypotheses,
-        poses,
-        health,
-    } = &results;
     tracing::info!(domain, node, "joined the robot's domain in AMCL's place");
     if config.amcl.autostart || parameters.is_on("autostart_node") {
         life.start(|change| body.change(change, &parameters));
     }
-    graph.run(&[hypotheses, poses, health], tick, |_| {
+    graph.run(&results.all(), tick, |_| {
         life.serve(|change| body.change(change, &parameters), &mut report)?;
         services.serve(&mut parameters, &mut report)?;
         rosout.send(&mut report)?;

@@ -55,22 +55,18 @@ impl Parameters {
     }
 
     pub(super) fn set(&mut self, name: &str, value: &ParameterValue) -> SetParametersResult {
-        let outcome = self.checked(name, value);
-        match outcome {
+        let (successful, reason) = match self.checked(name, value) {
             Ok((declared, value)) => {
                 self.0.insert(declared.name, value);
-                let is_idle = declared.counts == Counts::Never;
-                let reason = format!("it has no meaning here: {}", declared.meaning);
-                SetParametersResult {
-                    successful: true,
-                    reason: if is_idle { reason } else { String::new() },
-                }
+                let remark = match declared.counts {
+                    Counts::Never => format!("it has no meaning here: {}", declared.meaning),
+                    Counts::Always | Counts::AtStart => String::new(),
+                };
+                (true, remark)
             }
-            Err(reason) => SetParametersResult {
-                successful: false,
-                reason,
-            },
-        }
+            Err(reason) => (false, reason),
+        };
+        SetParametersResult { successful, reason }
     }
 
     pub(super) fn set_all<'a>(
@@ -282,28 +278,21 @@ impl std::fmt::Display for Value {
 
 impl From<&Value> for ParameterValue {
     fn from(value: &Value) -> Self {
-        let of = |kind: ParameterType| ParameterValue {
-            r#type: kind as u8,
-            ..ParameterValue::default()
+        let mut message = ParameterValue::default();
+        let kind = match value {
+            Value::Bool(_) => ParameterType::Bool,
+            Value::Integer(_) => ParameterType::Integer,
+            Value::Double(_) => ParameterType::Double,
+            Value::Text(_) => ParameterType::String,
         };
+        message.r#type = kind as u8;
         match value {
-            Value::Bool(bool_value) => ParameterValue {
-                bool_value: *bool_value,
-                ..of(ParameterType::Bool)
-            },
-            Value::Integer(integer_value) => ParameterValue {
-                integer_value: *integer_value,
-                ..of(ParameterType::Integer)
-            },
-            Value::Double(double_value) => ParameterValue {
-                double_value: *double_value,
-                ..of(ParameterType::Double)
-            },
-            Value::Text(text) => ParameterValue {
-                string_value: text.clone().into_owned(),
-                ..of(ParameterType::String)
-            },
+            Value::Bool(value) => message.bool_value = *value,
+            Value::Integer(value) => message.integer_value = *value,
+            Value::Double(value) => message.double_value = *value,
+            Value::Text(text) => message.string_value = text.clone().into_owned(),
         }
+        message
     }
 }
 

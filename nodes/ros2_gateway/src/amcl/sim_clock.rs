@@ -6,8 +6,8 @@ use zenoh_session::Report;
 
 use crate::GatewayError;
 use crate::checks::measured_ns;
-use crate::incoming::{MAX_BYTES, take};
-use crate::rmw::{Keeping, Member, Subscription, Watch};
+use crate::incoming::MAX_BYTES;
+use crate::rmw::{Keeping, Member, Subscription, Watch, take};
 
 pub(super) struct SimClock {
     clocks: Subscription<Clock>,

@@ -23,7 +23,7 @@ use expected::Expected;
 pub(crate) use expected::Seen;
 pub(crate) use name::resolve;
 use received::Sample;
-pub(crate) use typed::{Publisher, Service, Subscription, Watch};
+pub(crate) use typed::{Publisher, Service, Subscription, Watch, take};
 
 /// Largest size of a service's request, bytes: names and values of some hundred parameters.
 const MAX_REQUEST_BYTES: usize = 64 << 10;
@@ -94,7 +94,8 @@ pub(crate) trait Source {
         0
     }
 
-    /// Returns the largest number of queued messages.
+    /// Returns the largest number of queued messages: taking no more at once keeps a fast topic from
+    /// blocking the others.
     fn depth(&self) -> usize;
 
     /// Returns the next message, or an error for one that was too long to be queued.

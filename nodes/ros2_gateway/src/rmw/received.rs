@@ -1,20 +1,12 @@
-//! A message from the robot, and the number of messages lost before it.
+//! Messages from the robot, and the numbers of those that were lost.
 
 use std::collections::BTreeMap;
 
 use zenoh::bytes::ZBytes;
 
-use crate::GatewayError;
-
 /// Number of senders of a topic whose sequence numbers are followed; with more of them, losses are
 /// not counted reliably.
 const MAX_SENDERS: usize = 64;
-
-/// A message or the reason for its rejection, and the number of messages lost before it.
-pub(crate) struct Received<M> {
-    pub(crate) message: Result<M, GatewayError>,
-    pub(crate) lost: u64,
-}
 
 /// A message as it came.
 pub(crate) struct Sample {

@@ -8,7 +8,7 @@ use transport::TransportError;
 use zenoh_session::Report;
 
 use super::expected::{Expected, Seen};
-use super::received::{Received, Senders};
+use super::received::{Sample, Senders};
 use super::{
     Calls, Discovery, Keeping, MAX_REQUEST_BYTES, Member, Sink, Source, Topic, description,
 };
@@ -104,31 +104,48 @@ impl<M: RosMessage + DeserializeOwned> Subscription<M> {
         })
     }
 
-    /// Returns the number of messages lost since the last call because the queue was full.
-    pub(crate) fn dropped(&self) -> u64 {
-        self.source.dropped()
-    }
-
-    /// Returns the largest number of queued messages: taking no more at once keeps a fast topic
-    /// from blocking the others.
-    pub(crate) fn depth(&self) -> usize {
-        self.source.depth()
-    }
-
-    pub(crate) fn next(&mut self) -> Option<Received<M>> {
-        let mut lost = 0;
-        let message = self.source.next()?.and_then(|sample| {
-            let identity = sample.identity;
-            lost = identity.map_or(0, |identity| self.senders.lost_before(identity));
-            let bytes = sample.bytes.to_bytes();
-            ros::cdr::decode(&bytes).map_err(GatewayError::decoding(&self.topic))
-        });
-        if message.is_ok() && !self.received {
-            self.received = true;
+    /// Reads a message, and counts those that were lost before it.
+    fn read(&mut self, sample: &Sample, report: &mut Report) -> Result<M, GatewayError> {
+        let identity = sample.identity;
+        report.dropped(identity.map_or(0, |identity| self.senders.lost_before(identity)));
+        let message = ros::cdr::decode(&sample.bytes.to_bytes());
+        let message = message.map_err(GatewayError::decoding(&self.topic))?;
+        if !std::mem::replace(&mut self.received, true) {
             tracing::info!(topic = self.topic, "first message received");
         }
-        Some(Received { message, lost })
+        Ok(message)
     }
+}
+
+/// Passes queued messages to `each`, if there is a subscription, and counts rejected ones; fails only
+/// if the graph fails.
+pub(crate) fn take<M: RosMessage + DeserializeOwned>(
+    subscription: Option<&mut Subscription<M>>,
+    report: &mut Report,
+    mut each: impl FnMut(M, &mut Report) -> Result<(), GatewayError>,
+) -> Result<(), TransportError> {
+    let Some(subscription) = subscription else {
+        return Ok(());
+    };
+    report.dropped(subscription.source.dropped());
+    for _ in 0..subscription.source.depth() {
+        let Some(sample) = subscription.source.next() else {
+            break;
+        };
+        report.received();
+        let message = sample.and_then(|sample| subscription.read(&sample, report));
+        match message.and_then(|message| each(message, report)) {
+            Ok(()) => {}
+            // A map that does not fit into shared memory is rejected.
+            Err(GatewayError::Transport(error))
+                if !matches!(error, TransportError::SharedMemoryFull { .. }) =>
+            {
+                return Err(error);
+            }
+            Err(error) => report.refused(&error)?,
+        }
+    }
+    Ok(())
 }
 
 pub(crate) struct Service<S> {

@@ -10,7 +10,7 @@
 //! Early versions of `rmw_zenoh` wrote names between the fields; that is refused.
 
 use zenoh::bytes::ZBytes;
-use zenoh_ext::{ZDeserializer, ZSerializer};
+use zenoh_ext::{z_deserialize, z_serialize};
 
 use crate::GatewayError;
 
@@ -24,35 +24,21 @@ pub(crate) struct Attachment {
 
 impl Attachment {
     pub(crate) fn encode(self) -> ZBytes {
-        let mut serializer = ZSerializer::new();
-        serializer.serialize(self.sequence);
-        serializer.serialize(self.sent_ns);
-        serializer.serialize(self.sender);
-        serializer.finish()
+        z_serialize(&(self.sequence, self.sent_ns, self.sender))
     }
 
     /// Reads the attachment of a message or call on `topic`.
     pub(crate) fn decode(topic: &str, bytes: &ZBytes) -> Result<Self, GatewayError> {
-        let failed = || GatewayError::Attachment {
-            topic: topic.to_owned(),
-            found: bytes.len(),
-        };
-        let mut deserializer = ZDeserializer::new(bytes);
-        let mut read = || -> Result<_, zenoh_ext::ZDeserializeError> {
-            let sequence = deserializer.deserialize()?;
-            let sent_ns = deserializer.deserialize()?;
-            let sender = deserializer.deserialize()?;
-            Ok(Attachment {
+        match z_deserialize(bytes) {
+            Ok((sequence, sent_ns, sender)) => Ok(Attachment {
                 sequence,
                 sent_ns,
                 sender,
-            })
-        };
-        let attachment = read().map_err(|_| failed())?;
-        if deserializer.done() {
-            Ok(attachment)
-        } else {
-            Err(failed())
+            }),
+            Err(_) => Err(GatewayError::Attachment {
+                topic: topic.to_owned(),
+                found: bytes.len(),
+            }),
         }
     }
 }
