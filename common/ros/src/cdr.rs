@@ -62,34 +62,26 @@ mod tests {
 
     /// Expected bytes on the wire, from the layout of the message.
     fn scan_bytes(big: bool) -> Vec<u8> {
-        let mut bytes = vec![0, u8::from(!big), 0, 0];
-        let mut word = |value: u32| {
-            bytes.extend(if big {
-                value.to_be_bytes()
-            } else {
-                value.to_le_bytes()
-            });
+        let word = |value: u32| match big {
+            true => value.to_be_bytes(),
+            false => value.to_le_bytes(),
         };
-        word(7);
-        word(8);
-        word(6);
-        let text = |b: [u8; 4]| {
-            if big {
-                u32::from_be_bytes(b)
-            } else {
-                u32::from_le_bytes(b)
-            }
+        let floats = |values: &[f32]| -> Vec<u8> {
+            values
+                .iter()
+                .flat_map(|value| word(value.to_bits()))
+                .collect()
         };
-        word(text(*b"lase"));
-        word(text(*b"r\0\0\0"));
-        for value in [-1.5f32, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0] {
-            word(value.to_bits());
-        }
-        word(2);
-        word(1.0f32.to_bits());
-        word(f32::INFINITY.to_bits());
-        word(0);
-        bytes
+        [
+            &[0, u8::from(!big), 0, 0][..],
+            &[7, 8, 6].map(word).concat(),
+            b"laser\0\0\0",
+            &floats(&[-1.5, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]),
+            &word(2),
+            &floats(&[1.0, f32::INFINITY]),
+            &word(0),
+        ]
+        .concat()
     }
 
     #[test]

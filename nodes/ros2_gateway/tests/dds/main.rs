@@ -23,7 +23,7 @@ use shared::{Joined, NODES, pose2, poses_of, start_gateway, start_nodes, wait_un
 use tests::needs::Need;
 use tests::robot::Robot;
 use tests::{executables, python};
-use transport::testing::{Isolated, NodeProcess, wait_for};
+use transport::testing::{Isolated, NodeProcess, wait_for, wait_for_next};
 use transport::{Graph, monotonic_ns};
 
 const LIBRARIES: [&str; 10] = [
@@ -167,21 +167,16 @@ fn scan_odometry_and_a_large_map_enter_the_graph() {
 
     // 16 MB, in some hundred fragments.
     let maps = joined.graph.subscriber::<topic::Map>().unwrap();
-    joined
-        .robot
-        .order("map", json!({ "width": 4000, "height": 4000 }));
-    let (header, occupied): (MapHeader, usize) = wait_for(&joined.graph, &maps, |header, cells| {
-        Some((
-            *header,
-            cells.iter().filter(|cell| **cell == cells[0]).count(),
-        ))
-    });
+    let size = json!({ "width": 4000, "height": 4000 });
+    joined.robot.order("map", size);
+    let (header, cells): (MapHeader, Vec<u8>) = wait_for_next(&joined.graph, &maps);
     assert_eq!((header.width, header.height), (4000, 4000));
-    assert_eq!(occupied, 4000);
+    let occupied = cells.iter().filter(|cell| **cell == cells[0]);
+    assert_eq!(occupied.count(), 4000);
 
     // A gateway that starts again gets the map without being sent it again.
     restart_gateway(&mut joined);
-    let again: MapHeader = wait_for(&joined.graph, &maps, |header, _| Some(*header));
+    let (again, _): (MapHeader, Vec<u8>) = wait_for_next(&joined.graph, &maps);
     assert_eq!(again.map_id, header.map_id);
     drive(&mut joined, START_NS);
     joined.stop();
@@ -193,50 +188,45 @@ fn what_the_graph_says_reaches_the_robot() {
         return;
     };
     drive(&mut joined, START_NS);
-    let publisher = joined.graph.publisher::<topic::Hypotheses>().unwrap();
+    let (graph, robot) = (&joined.graph, &mut joined.robot);
+    let publisher = graph.publisher::<topic::Hypotheses>().unwrap();
     for topic in ["hypotheses", "initialpose", "/diagnostics"] {
-        joined.robot.order("subscribe", json!({ "topic": topic }));
+        robot.order("subscribe", json!({ "topic": topic }));
     }
-    let diagnostics = joined.robot.wait_for("/diagnostics");
+    let diagnostics = robot.wait_for("/diagnostics");
     assert_eq!(diagnostics["names"], json!(["backcast: ros2_gateway"]));
     // The filter has come by now, or comes.
-    let mut seed = None;
-    for counter in 0.. {
+    let item = Hypothesis {
+        map_from_base: pose2(1.0, 2.0, 0.0),
+        map_from_laser: pose2(1.2, 2.0, 0.0),
+        ..Hypothesis::zeroed()
+    };
+    let send = |counter| {
         let header = HypothesesHeader {
             stamp: stamp(counter),
             verdict: Verdict::Unique as u32,
             mount_known: 1,
             ..HypothesesHeader::zeroed()
         };
-        let item = Hypothesis {
-            map_from_base: pose2(1.0, 2.0, 0.0),
-            map_from_laser: pose2(1.2, 2.0, 0.0),
-            ..Hypothesis::zeroed()
-        };
         publisher.send(header, &[item]).unwrap();
-        let said = joined.robot.receive();
-        if said["event"] == "initialpose" {
-            seed = Some(said);
-            break;
-        }
-    }
+        robot.receive()
+    };
+    let seed = (0..).map(send).find(|said| said["event"] == "initialpose");
     let seed = seed.unwrap();
     assert_eq!(seed["poses"], json!([[1.0, 2.0, 0.0, 1.0]]));
     assert_eq!(seed["stamp"], START_NS);
     assert_eq!(seed["frame"], "map");
-    let hypotheses = joined.robot.wait_for("hypotheses");
+    let hypotheses = robot.wait_for("hypotheses");
     assert_eq!(hypotheses["poses"][0], seed["poses"][0]);
 
     // Every client that asks gets a response.
-    joined.robot.order("reinitialize", json!({ "clients": 20 }));
-    let said = joined.robot.wait_for("reinitialized");
+    robot.order("reinitialize", json!({ "clients": 20 }));
+    let said = robot.wait_for("reinitialized");
     assert_eq!(said["missing"], 0);
 
     // The graph of ROS shows the node and its topics.
-    joined
-        .robot
-        .order("nodes", json!({ "topic": "hypotheses" }));
-    let said = joined.robot.wait_for("nodes");
+    robot.order("nodes", json!({ "topic": "hypotheses" }));
+    let said = robot.wait_for("nodes");
     let nodes: Vec<String> = serde_json::from_value(said["nodes"].clone()).unwrap();
     assert!(nodes.contains(&"/backcast".to_owned()), "{nodes:?}");
     assert_eq!(said["publishers"], json!(["backcast"]));
@@ -248,7 +238,7 @@ fn a_lifecycle_manager_configures_and_activates_us_in_amcls_place() {
     let Some(mut joined) = join("dds-amcl", "/", &["--as", "amcl"]) else {
         return;
     };
-    let robot = &mut joined.robot;
+    let (graph, robot) = (&joined.graph, &mut joined.robot);
     let mut change = |id: u8| {
         robot.order("change", json!({ "id": id }));
         let success = robot.wait_for("change")["success"].as_bool().unwrap();
@@ -268,22 +258,15 @@ fn a_lifecycle_manager_configures_and_activates_us_in_amcls_place() {
     assert_eq!(said["value"], 0.25);
 
     // A click goes to the tracker, and the tracker's pose to the robot.
-    let hints = joined
-        .graph
-        .subscriber::<topic::InitialPoseTopic>()
-        .unwrap();
-    joined
-        .robot
-        .order("click", json!({ "ns": START_NS, "x": 3.0, "y": 1.0 }));
-    let hint = wait_for(&joined.graph, &hints, |hint, _| Some(hint.map_from_base));
+    let hints = graph.subscriber::<topic::InitialPoseTopic>().unwrap();
+    robot.order("click", json!({ "ns": START_NS, "x": 3.0, "y": 1.0 }));
+    let hint = wait_for(graph, &hints, |hint, _| Some(hint.map_from_base));
     assert_eq!(hint, pose2(3.0, 1.0, 0.0));
-    let poses = poses_of(&joined.graph);
+    let poses = poses_of(graph);
     poses.send(tracked(), &[]).unwrap();
     // Kept for late subscribers.
-    joined
-        .robot
-        .order("subscribe", json!({ "topic": "amcl_pose" }));
-    let pose = joined.robot.wait_for("amcl_pose");
+    robot.order("subscribe", json!({ "topic": "amcl_pose" }));
+    let pose = robot.wait_for("amcl_pose");
     assert_eq!(pose["poses"], json!([[3.0, 1.0, 0.0, 1.0]]));
     joined.stop();
 }

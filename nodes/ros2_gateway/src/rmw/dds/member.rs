@@ -13,7 +13,6 @@ use crate::{Config, GatewayError};
 /// what is not sent yet.
 const FAREWELL: Duration = Duration::from_millis(100);
 
-/// The gateway as a node of ROS that others see, until this is dropped.
 pub(crate) struct Member {
     pub(super) id: u32,
     pub(super) waker: Waker,

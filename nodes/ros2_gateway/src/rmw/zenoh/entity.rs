@@ -42,7 +42,6 @@ impl Kind {
     }
 }
 
-/// The gateway as a node of ROS that others see, until this is dropped.
 pub(crate) struct Member {
     pub(super) session: Session,
     pub(super) domain: u32,

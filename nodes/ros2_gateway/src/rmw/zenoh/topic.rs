@@ -102,7 +102,6 @@ pub(super) struct Subscription {
 }
 
 impl Subscription {
-    /// Takes messages of at most `max_bytes`, and queues at most `depth` of them.
     pub(super) fn open(
         member: &Member,
         topic: &Topic<'_>,
