@@ -37,9 +37,6 @@ pub fn decode<T: DeserializeOwned>(bytes: &[u8]) -> Result<T, String> {
 }
 
 /// Encodes a message, little-endian.
-///
-/// # Errors
-/// If a string or a sequence in it is longer than CDR allows.
 pub fn encode<T: Serialize>(message: &T) -> Result<Vec<u8>, cdr_encoding::Error> {
     let mut bytes = vec![LITTLE_ENDIAN[0], LITTLE_ENDIAN[1], 0, 0];
     bytes.extend(cdr_encoding::to_vec::<T, LittleEndian>(message)?);

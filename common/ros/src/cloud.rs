@@ -108,9 +108,6 @@ impl Cloud {
     }
 
     /// Converts to the scan of the level laser [`CloudMount::planar`], in the frame of the cloud.
-    ///
-    /// # Errors
-    /// If the cloud has no usable coordinates, or less data than it says.
     pub fn scan(&self, mount: &CloudMount, heights: Heights) -> Result<LaserScan, ConversionError> {
         let header = self.header();
         Ok(match self {

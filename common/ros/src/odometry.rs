@@ -40,11 +40,7 @@ mod tests {
 
     #[test]
     fn odometry_comes_back() {
-        let pose = Pose2 {
-            x: 1.0,
-            y: 2.0,
-            yaw: 0.5,
-        };
+        let pose = Pose2::from(geometry::Pose::new(1.0, 2.0, 0.5));
         let given = messages::Odometry {
             odom_from_child: pose,
             twist: pose,

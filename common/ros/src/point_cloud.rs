@@ -76,9 +76,6 @@ struct Number {
 
 impl PointCloud2 {
     /// Iterates over all points, row by row.
-    ///
-    /// # Errors
-    /// If a coordinate is missing or of another datatype, or the data is too short.
     pub fn points(&self) -> Result<impl Iterator<Item = CloudPoint>, ConversionError> {
         let [x, y, z] = [self.place("x")?, self.place("y")?, self.place("z")?];
         let time = TIMES.iter().find_map(|name| self.number(name, 5..=8));

@@ -38,9 +38,6 @@ pub(crate) struct Published {
 
 /// Searches for `seconds` on each middleware, or on the chosen one, and prints the published topics
 /// that the gateway could take, one JSON object per line.
-///
-/// # Errors
-/// If a name or Zenoh's configuration cannot be used, or standard output cannot be written.
 pub(crate) fn look(graph: &Graph, config: &Config, seconds: f64) -> Result<(), GatewayError> {
     let mut report = Report::new(graph.health()?);
     let mut found = BTreeSet::new();

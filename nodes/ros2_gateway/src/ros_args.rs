@@ -57,10 +57,8 @@ pub fn translated(words: impl Iterator<Item = OsString>) -> Result<Vec<String>, 
                     found.extend(["--parameter".to_owned(), rule.to_owned()]);
                 }
             }
-            "--params-file" => found.extend([word.clone(), following(&word, words.next())?]),
-            "--log-level" => {
-                let level = following(&word, words.next())?;
-                found.extend(["--log-level".to_owned(), level]);
+            "--params-file" | "--log-level" => {
+                found.extend([word.clone(), following(&word, words.next())?]);
             }
             "-e" | "--enclave" | "--log-config-file" | "--log-file-name" => {
                 following(&word, words.next())?;

@@ -25,11 +25,7 @@ use crate::{Config, GatewayError, look};
 /// Longest time between two steps; a late joiner of the graph may wait this long for the map.
 const TICK: Duration = Duration::from_millis(50);
 
-/// Carries messages until the stop flag is set.
-///
-/// # Errors
-/// If a name or Zenoh's configuration cannot be used, the session cannot be opened, or the graph
-/// fails. A missing robot is no error: the gateway waits for it.
+/// Carries messages until the stop flag is set. A missing robot is no error: the gateway waits for it.
 pub fn run(graph: &Graph, config: &Config) -> Result<(), GatewayError> {
     if let Some(seconds) = config.look {
         return look::look(graph, config, seconds);

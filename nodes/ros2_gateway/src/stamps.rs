@@ -11,9 +11,6 @@ pub(crate) fn in_map(of: Stamp, map_frame: &str) -> Result<Header, GatewayError>
 }
 
 /// Converts nanoseconds since 1970 to a time of ROS.
-///
-/// # Errors
-/// [`GatewayError::Unstampable`] for times that are negative or too large for its 32 bits.
 pub(crate) fn stamp(stamp_ns: i64) -> Result<Time, GatewayError> {
     let stamp = Time::from_ns(stamp_ns).filter(|_| stamp_ns >= 0);
     stamp.ok_or(GatewayError::Unstampable { stamp_ns })

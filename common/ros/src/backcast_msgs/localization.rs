@@ -87,7 +87,7 @@ string reason
 #[cfg(test)]
 mod tests {
     use bytemuck::Zeroable;
-    use messages::{Pose2, TrackState};
+    use messages::TrackState;
 
     use super::*;
 
@@ -100,11 +100,7 @@ mod tests {
             since_ns: 5_000_000_007,
             pose_known: 1,
             mount_known: 1,
-            map_from_base: Pose2 {
-                x: 1.0,
-                y: 2.0,
-                yaw: 0.0,
-            },
+            map_from_base: geometry::Pose::new(1.0, 2.0, 0.0).into(),
             ..PoseHeader::zeroed()
         };
         let said = Localization::of(Header::default(), &from, b"only fit 0.4");

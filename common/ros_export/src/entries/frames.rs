@@ -184,24 +184,14 @@ mod tests {
 
     use super::*;
 
-    const AHEAD: Pose2 = Pose2 {
-        x: 0.5,
-        y: 0.0,
-        yaw: 0.0,
-    };
-
     fn at(x: f64) -> Pose2 {
-        Pose2 {
-            x,
-            y: 0.0,
-            yaw: 0.0,
-        }
+        Pose::new(x, 0.0, 0.0).into()
     }
 
     fn scan(mount_known: bool) -> ScanHeader {
         ScanHeader {
             frame: FrameName::new("laser"),
-            base_from_laser: if mount_known { AHEAD } else { at(0.0) },
+            base_from_laser: at(if mount_known { 0.5 } else { 0.0 }),
             mount_known: mount_known.into(),
             ..ScanHeader::zeroed()
         }

@@ -116,9 +116,6 @@ impl Lifecycle {
     }
 
     /// Finds the requested transition: by name if there is one, else by number.
-    ///
-    /// # Errors
-    /// Returns the reason if the transition does not begin in this state.
     pub(crate) fn asked(&self, wanted: &Transition) -> Result<Change, String> {
         let from_here = ASKED.iter().filter(|row| row.start == self.state);
         let is_wanted = |row: &&Asked| match &*wanted.label {

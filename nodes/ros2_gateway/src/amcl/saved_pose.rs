@@ -64,9 +64,6 @@ impl SavedPose {
 
 /// Checks that the parameter alone decides which file is written, and not another user who puts a
 /// link in its place.
-///
-/// # Errors
-/// Names the folder, link or file that is not trusted.
 pub(super) fn check(file: &Path) -> Result<(), GatewayError> {
     trusted_files::check_place(file).map_err(|error| refused(file, &transport::with_causes(&error)))
 }
@@ -96,9 +93,6 @@ pub(super) fn save(
 }
 
 /// Reads the pose of the file; `None` if there is no file.
-///
-/// # Errors
-/// If the file is not trusted, cannot be read, or holds no pose in the map's frame.
 pub(super) fn load(file: &Path, map_frame: &str) -> Result<Option<Pose>, GatewayError> {
     let refuse = |reason: &dyn std::fmt::Display| Err(refused(file, reason));
     let text = match trusted_files::read(file, MAX_BYTES) {

@@ -1,32 +1,22 @@
 use bytemuck::Zeroable;
 use messages::{FrameName, Pose2};
-use ros::{Header, Quaternion, Transform, TransformStamped, Vector3};
+use ros::{Quaternion, TransformStamped};
 
 use super::*;
 
 fn fixed(parent: &str, child: &str, x: f64, rotation: Quaternion) -> TfMessage {
-    let transform = TransformStamped {
-        header: Header {
-            frame_id: parent.to_owned(),
-            ..Header::default()
-        },
-        child_frame_id: child.to_owned(),
-        transform: Transform {
-            translation: Vector3 { x, y: 0.0, z: 0.0 },
-            rotation,
-        },
-    };
+    let mut transform = TransformStamped::default();
+    transform.header.frame_id = parent.to_owned();
+    transform.child_frame_id = child.to_owned();
+    transform.transform.translation.x = x;
+    transform.transform.rotation = rotation;
     TfMessage {
         transforms: vec![transform],
     }
 }
 
 fn at(x: f64) -> Pose2 {
-    Pose2 {
-        x,
-        y: 0.0,
-        yaw: 0.0,
-    }
+    Pose::new(x, 0.0, 0.0).into()
 }
 
 fn odometry(child: &str, x: f64) -> Odometry {

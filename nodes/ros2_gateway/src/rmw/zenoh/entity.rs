@@ -161,24 +161,11 @@ impl Token {
     /// Reads the token of a topic or service; nodes have no topic.
     pub(super) fn read(key: &str) -> Option<Self> {
         let parts: Vec<&str> = key.split('/').collect();
-        let [
-            TOKENS,
-            _,
-            session,
-            _,
-            _,
-            kind,
-            _,
-            namespace,
-            node,
-            topic,
-            name,
-            hash,
-            _,
-        ] = parts[..]
-        else {
+        if parts.len() != 13 || parts[0] != TOKENS {
             return None;
-        };
+        }
+        let [session, kind, namespace, node] = [2, 5, 7, 8].map(|index| parts[index]);
+        let [topic, name, hash] = [9, 10, 11].map(|index| parts[index]);
         let namespace = namespace.replace('%', "/");
         let namespace = namespace.trim_end_matches('/');
         Some(Token {
