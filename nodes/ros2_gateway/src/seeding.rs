@@ -225,21 +225,19 @@ mod tests {
     }
 
     #[test]
-    fn only_what_is_of_one_time_is_compared() {
-        let mut seeding = seeding(Seed::Lost);
-        answer(&mut seeding, 1000, true, &[1.0]);
-        seeding.on_belief(belief(700, 9.0));
-        seeding.on_belief(belief(600, 9.0));
-        assert!(seeding.wanted.is_none());
-    }
-
-    #[test]
-    fn once_means_once() {
-        let mut seeding = seeding(Seed::Once);
-        answer(&mut seeding, 0, true, &[1.0]);
-        seeding.on_belief(belief(0, 9.0));
-        seeding.on_belief(belief(0, 9.0));
-        assert!(seeding.wanted.is_none());
+    fn only_what_is_of_one_time_is_compared_and_once_means_once() {
+        for (when, beliefs_ms, expected) in [
+            (Seed::Lost, [1000, 1000], Some(Reason::Lost)),
+            (Seed::Lost, [700, 600], None),
+            (Seed::Once, [1000, 1000], None),
+        ] {
+            let mut seeding = seeding(when);
+            answer(&mut seeding, 1000, true, &[1.0]);
+            for ms in beliefs_ms {
+                seeding.on_belief(belief(ms, 9.0));
+            }
+            assert_eq!(seeding.wanted, expected, "{when:?}");
+        }
     }
 
     #[test]
