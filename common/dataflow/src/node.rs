@@ -2,9 +2,9 @@
 
 use serde_saphyr::Spanned;
 
+use crate::raw::{RawDataflow, RawNode, Text};
 use crate::{
     Dataflow, Input, MAX_ID_BYTES, MAX_NODES, Node, Place, Problem, Restart, RestartPolicy, Topics,
-    raw::{RawDataflow, RawNode, Text},
     scalar, words,
 };
 

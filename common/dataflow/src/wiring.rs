@@ -2,10 +2,8 @@
 
 use std::collections::HashMap;
 
-use crate::{
-    Problem,
-    raw::{RawDataflow, RawNode, Text},
-};
+use crate::Problem;
+use crate::raw::{RawDataflow, RawNode, Text};
 
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Topics<'a> {

@@ -1,22 +1,19 @@
 //! `backcast check`: reports all errors in a descriptor and in its nodes' arguments, which they
 //! check themselves, and prints the graph as text.
 
-use std::{
-    fmt::Write as _,
-    path::{Path, PathBuf},
-    process::{Command as Process, ExitCode, Stdio},
-};
+use std::fmt::Write as _;
+use std::path::{Path, PathBuf};
+use std::process::{Command as Process, ExitCode, Stdio};
 
 use anyhow::{Context, bail};
 use command_line::stdout;
 use dataflow::{Dataflow, Node, RestartPolicy};
 use transport::node::CHECK_ARGUMENTS_VARIABLE;
 
-use crate::{
-    descriptor::{self, Builds, Descriptor},
-    installed::is_ours,
-    run::{arguments::value, executable, lasers, not_started, shared},
-};
+use crate::descriptor::{self, Builds, Descriptor};
+use crate::installed::is_ours;
+use crate::run::arguments::value;
+use crate::run::{executable, lasers, not_started, shared};
 
 /// Node that reads a laser, and node that takes scans of a ROS 2 robot.
 const LASER: &str = "lms_reader";

@@ -1,9 +1,7 @@
 //! `backcast logs`: prints the log lines of the nodes of a running graph, from topic `log`.
 
-use std::{
-    process::ExitCode,
-    time::{Duration, Instant, SystemTime},
-};
+use std::process::ExitCode;
+use std::time::{Duration, Instant, SystemTime};
 
 use clap::Args;
 use command_line::stdout::print;

@@ -1,12 +1,10 @@
 //! Runs the build commands of the descriptor, each once.
 
-use std::{
-    collections::HashSet,
-    io,
-    os::fd::AsFd,
-    path::Path,
-    process::{Command as Process, Stdio},
-};
+use std::collections::HashSet;
+use std::io;
+use std::os::fd::AsFd;
+use std::path::Path;
+use std::process::{Command as Process, Stdio};
 
 use anyhow::{Context, bail};
 use dataflow::{Command, Dataflow, Node};

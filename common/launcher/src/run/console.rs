@@ -1,11 +1,9 @@
 //! Writes our remarks and the nodes' output to standard error, each line whole and with its source;
 //! in the graph, remarks are also published on `log`.
 
-use std::{
-    io::{self, BufRead, BufReader, Read, Write},
-    sync::mpsc::Sender,
-    thread,
-};
+use std::io::{self, BufRead, BufReader, Read, Write};
+use std::sync::mpsc::Sender;
+use std::thread;
 
 use messages::LogLevel;
 use transport::log_in_graph;

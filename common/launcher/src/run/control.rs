@@ -1,15 +1,13 @@
 //! Control requests to a running launcher: lines of JSON over a socket in this user's folder. A
 //! thread receives them; the launcher answers once per tick.
 
-use std::{
-    fs::remove_file,
-    io::{BufRead, BufReader, Read, Write},
-    os::unix::net::{UnixListener, UnixStream},
-    path::Path,
-    sync::mpsc::{Receiver, Sender, channel},
-    thread,
-    time::Duration,
-};
+use std::fs::remove_file;
+use std::io::{BufRead, BufReader, Read, Write};
+use std::os::unix::net::{UnixListener, UnixStream};
+use std::path::Path;
+use std::sync::mpsc::{Receiver, Sender, channel};
+use std::thread;
+use std::time::Duration;
 
 use anyhow::Context;
 use schemars::JsonSchema;

@@ -3,13 +3,10 @@
 
 mod member;
 
-use std::{
-    io,
-    path::{Path, PathBuf},
-    sync::mpsc::{Receiver, Sender, channel},
-    thread,
-    time::{Duration, Instant},
-};
+use std::path::{Path, PathBuf};
+use std::sync::mpsc::{Receiver, Sender, channel};
+use std::time::{Duration, Instant};
+use std::{io, thread};
 
 use anyhow::Context;
 use dataflow::Node;
@@ -18,12 +15,10 @@ use nix::sys::signal::Signal;
 use transport::GraphName;
 
 use self::member::{Member, State, Wanted, lost_data, not_supervised};
-use super::{
-    console::warn,
-    control::NodeStatus,
-    process::Process,
-    supervision::{is_over, is_source},
-};
+use super::console::warn;
+use super::control::NodeStatus;
+use super::process::Process;
+use super::supervision::{is_over, is_source};
 
 /// Time to end in order once asked to: for nodes without outputs, then for all others.
 const GRACE: Duration = Duration::from_millis(700);

@@ -7,13 +7,11 @@ use pose_table::{Frame, Row, Rows, ScanAnswer};
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use super::{
-    console::{LAUNCHER, say},
-    log_files::LogFiles,
-    output::{Output, Reader},
-    report::Report,
-    summary::Summary,
-};
+use super::console::{LAUNCHER, say};
+use super::log_files::LogFiles;
+use super::output::{Output, Reader};
+use super::report::Report;
+use super::summary::Summary;
 use crate::control::LogLine;
 
 /// Last line of a run in JSON.

@@ -1,18 +1,13 @@
 //! The stages of a run: check, build, start, watch, stop, sum up.
 
-use std::{
-    io,
-    os::unix::fs::MetadataExt,
-    path::PathBuf,
-    process::ExitCode,
-    sync::{
-        Arc,
-        atomic::{AtomicBool, Ordering},
-        mpsc::Receiver,
-    },
-    thread,
-    time::{Duration, Instant},
-};
+use std::os::unix::fs::MetadataExt;
+use std::path::PathBuf;
+use std::process::ExitCode;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::mpsc::Receiver;
+use std::time::{Duration, Instant};
+use std::{io, thread};
 
 use anyhow::Context;
 use command_line::{LOST_DATA, wrong_use};
@@ -25,22 +20,17 @@ use transport::{
     remove_dead_graphs, remove_leftovers, shared_memory_has_room,
 };
 
-use super::{
-    build,
-    console::{LAUNCHER, note, say, warn},
-    control::{self, Answer, Asked, Question, Status},
-    crew::Crew,
-    forward, foxglove,
-    journal::Journal,
-    lasers,
-    log_files::LogFiles,
-    options::Config,
-    output::{Output, Reader},
-    record::{self, RECORDER},
-    recording::Recorder,
-    replay, shared, tracker,
-    watch::Watch,
-};
+use super::console::{LAUNCHER, note, say, warn};
+use super::control::{self, Answer, Asked, Question, Status};
+use super::crew::Crew;
+use super::journal::Journal;
+use super::log_files::LogFiles;
+use super::options::Config;
+use super::output::{Output, Reader};
+use super::record::{self, RECORDER};
+use super::recording::Recorder;
+use super::watch::Watch;
+use super::{build, forward, foxglove, lasers, replay, shared, tracker};
 use crate::descriptor::{self, Builds, Descriptor};
 
 const TICK: Duration = Duration::from_millis(20);

@@ -1,10 +1,8 @@
 //! Options of `backcast run`.
 
-use std::{
-    hash::{BuildHasher, Hasher, RandomState},
-    path::PathBuf,
-    str::FromStr,
-};
+use std::hash::{BuildHasher, Hasher, RandomState};
+use std::path::PathBuf;
+use std::str::FromStr;
 
 use clap::Args;
 use engine::heading::HeadingConfig;

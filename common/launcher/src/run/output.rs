@@ -1,11 +1,11 @@
 //! Standard output on a thread of its own, so that its reader cannot block supervision.
 
-use std::{
-    io::{self, ErrorKind, Write},
-    sync::mpsc::{Receiver, RecvTimeoutError, SyncSender, TrySendError, channel, sync_channel},
-    thread,
-    time::Duration,
+use std::io::{self, ErrorKind, Write};
+use std::sync::mpsc::{
+    Receiver, RecvTimeoutError, SyncSender, TrySendError, channel, sync_channel,
 };
+use std::thread;
+use std::time::Duration;
 
 use command_line::OutputError;
 

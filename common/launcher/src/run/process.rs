@@ -1,24 +1,19 @@
 //! The process of a node, in a process group of its own, whose children end with it. If the
 //! launcher dies, the kernel ends the process.
 
-use std::{
-    io::{self, IsTerminal},
-    os::unix::process::CommandExt,
-    path::{Path, PathBuf},
-    process::{Child, Command, ExitStatus, Stdio},
-    sync::{Arc, Mutex, mpsc::Sender},
-};
+use std::io::{self, IsTerminal};
+use std::os::unix::process::CommandExt;
+use std::path::{Path, PathBuf};
+use std::process::{Child, Command, ExitStatus, Stdio};
+use std::sync::mpsc::Sender;
+use std::sync::{Arc, Mutex};
 
 use dataflow::Node;
-use nix::{
-    errno::Errno,
-    sys::{
-        prctl,
-        signal::{SigHandler, Signal, killpg, signal},
-        wait::{Id, WaitPidFlag, WaitStatus, waitid},
-    },
-    unistd::{Pid, getpid, getppid},
-};
+use nix::errno::Errno;
+use nix::sys::prctl;
+use nix::sys::signal::{SigHandler, Signal, killpg, signal};
+use nix::sys::wait::{Id, WaitPidFlag, WaitStatus, waitid};
+use nix::unistd::{Pid, getpid, getppid};
 use transport::{GRAPH_VARIABLE, GraphName, node::LOG_FORMAT_VARIABLE};
 
 use super::console;

@@ -1,22 +1,18 @@
 //! Recording of a running graph on request: its recorder is started and stopped.
 
-use std::{
-    env,
-    path::{Path, PathBuf},
-    time::{Instant, SystemTime},
-};
+use std::env;
+use std::path::{Path, PathBuf};
+use std::time::{Instant, SystemTime};
 
 use command_line::output::{folder_of, numbered};
 use dataflow::Node;
 use nix::unistd::{AccessFlags, access};
 
-use super::{
-    arguments::{set, value},
-    control::Recording,
-    crew::Crew,
-    process::executable,
-    record::{self, RECORDER},
-};
+use super::arguments::{set, value};
+use super::control::Recording;
+use super::crew::Crew;
+use super::process::executable;
+use super::record::{self, RECORDER};
 use crate::descriptor::Descriptor;
 
 pub(super) struct Recorder {

@@ -1,9 +1,7 @@
 //! Decides what follows when a process ends, and when the run is over. Pure: no clock, no process.
 
-use std::{
-    collections::VecDeque,
-    time::{Duration, Instant},
-};
+use std::collections::VecDeque;
+use std::time::{Duration, Instant};
 
 use command_line::wrong_use;
 use dataflow::{Node, Restart, RestartPolicy};

@@ -6,21 +6,17 @@ mod graphs;
 mod processes;
 mod usage;
 
-use std::{
-    fs::{self, File},
-    io::{BufRead, BufReader, Lines, Read},
-    os::unix::net::UnixDatagram,
-    os::unix::process::{CommandExt, ExitStatusExt},
-    path::Path,
-    process::{Child, ChildStderr, Command, ExitStatus, Output, Stdio},
-};
+use std::fs::{self, File};
+use std::io::{BufRead, BufReader, Lines, Read};
+use std::os::unix::net::UnixDatagram;
+use std::os::unix::process::{CommandExt, ExitStatusExt};
+use std::path::Path;
+use std::process::{Child, ChildStderr, Command, ExitStatus, Output, Stdio};
 
 use messages::{NodeState, topic};
-use nix::{
-    sys::signal::{Signal, kill},
-    sys::stat::Mode,
-    unistd::{Pid, mkfifo},
-};
+use nix::sys::signal::{Signal, kill};
+use nix::sys::stat::Mode;
+use nix::unistd::{Pid, mkfifo};
 use tempfile::TempDir;
 use tests::needs::Need;
 use transport::testing::{wait_for_health, wait_until};

@@ -1,12 +1,11 @@
 //! One node of the crew and its process.
 
-use std::{
-    io,
-    path::Path,
-    process::ExitStatus,
-    sync::{Arc, Mutex, mpsc::Sender},
-    time::{Duration, Instant},
-};
+use std::io;
+use std::path::Path;
+use std::process::ExitStatus;
+use std::sync::mpsc::Sender;
+use std::sync::{Arc, Mutex};
+use std::time::{Duration, Instant};
 
 use anyhow::{Context, bail};
 use command_line::{LOST_DATA, WRONG_USE};
@@ -15,12 +14,10 @@ use messages::LogLevel;
 use nix::sys::signal::Signal;
 use transport::{GraphName, log_in_graph};
 
-use super::super::{
-    console::warn,
-    control::NodeStatus,
-    process::{Process, not_started},
-    supervision::{AfterEnd, Ended, Pulse, Restarts, is_essential},
-};
+use super::super::console::warn;
+use super::super::control::NodeStatus;
+use super::super::process::{Process, not_started};
+use super::super::supervision::{AfterEnd, Ended, Pulse, Restarts, is_essential};
 use crate::installed::is_ours;
 
 /// Number of failures in a row from which a node is reported as failing.
