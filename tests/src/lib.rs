@@ -53,6 +53,21 @@ fn beside_the_project(test: &str, name: &str) -> Option<PathBuf> {
     found
 }
 
+/// Runs a command to its end; returns exit code, standard output and standard error.
+pub fn said_by(command: &mut Command) -> (i32, String, String) {
+    let output = command.output().unwrap();
+    let text = |bytes| String::from_utf8(bytes).unwrap();
+    let code = output.status.code().unwrap();
+    (code, text(output.stdout), text(output.stderr))
+}
+
+/// Asserts the exit code of a command and a part of its standard error.
+#[track_caller]
+pub fn assert_ends((code, _, stderr): (i32, String, String), expected: i32, part: &str) {
+    let is_expected = code == expected && stderr.contains(part);
+    assert!(is_expected, "{part}: {code}: {stderr}");
+}
+
 /// Runs a command that must succeed, and returns its output.
 pub fn text_of(command: &mut Command) -> String {
     let output = command.output().unwrap();

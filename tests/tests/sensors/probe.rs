@@ -10,17 +10,8 @@ use tests::world::World;
 use transport::testing::{Isolated, NodeProcess, wait_for_health};
 
 /// Exit code, standard output and standard error.
-fn probe(device: &str) -> (Option<i32>, String, String) {
-    let outcome = executables::backcast()
-        .args(["probe", device, "--width", "60"])
-        .output()
-        .unwrap();
-    let text = |bytes| String::from_utf8(bytes).unwrap();
-    (
-        outcome.status.code(),
-        text(outcome.stdout),
-        text(outcome.stderr),
-    )
+fn probe(device: &str) -> (i32, String, String) {
+    tests::said_by(executables::backcast().args(["probe", device, "--width", "60"]))
 }
 
 /// Returns the output about an emulated device with these arguments; `device` makes the probe's
@@ -41,7 +32,7 @@ fn emulated(tag: &str, arguments: &[&str], device: impl Fn(&str) -> String) -> S
         report.node.as_str() == "emulator" && is_there(&device)
     });
     let (code, said, complained) = probe(&device);
-    assert_eq!((code, complained.as_str()), (Some(0), ""), "{said}");
+    assert_eq!((code, complained.as_str()), (0, ""), "{said}");
     emulator.stop();
     said
 }
@@ -111,7 +102,7 @@ fn an_lms2xx_at_its_baud_rate() {
 fn what_is_no_laser_is_distinguished() {
     let fails = |device: &str, expected: &str| {
         let (code, said, complained) = probe(device);
-        assert_eq!((code, said.as_str()), (Some(1), ""), "{complained}");
+        assert_eq!((code, said.as_str()), (1, ""), "{complained}");
         assert!(complained.contains(expected), "{complained}");
     };
     let free = TcpListener::bind("127.0.0.1:0").unwrap();

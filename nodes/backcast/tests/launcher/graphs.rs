@@ -23,13 +23,9 @@ fn give(folder: &Path, user: u32) {
 fn a_name_that_is_alive_is_refused_and_goes_on() {
     let name = "test-alive";
     let folder = waiting_graph();
-    let mut running = Running::start(&folder, &["--graph", name]);
-    assert_eq!(running.receive("source"), "up");
-    assert_ends(
-        run(&["id: a, args: -c true"], &["--graph", name]),
-        1,
-        "graph test-alive still runs",
-    );
+    let running = Running::start_and_wait(&folder, name);
+    let other = run(&["id: a, args: -c true"], &["--graph", name]);
+    assert_ends(other, 1, "graph test-alive still runs");
     assert!(!shared_memory_of(name).is_empty());
     let_go(&folder);
     running.end_well();
@@ -87,22 +83,19 @@ fn a_graph_of_another_user_is_named_with_the_way_to_it() {
     let folder = graph(&["id: source, outputs: [scan], args: \"-c 'echo up; exec sleep 1000'\""]);
     let user = 12_347;
     give(folder.path(), user);
-    let mut running = Running::start(&folder, &["--graph", "test-seen"]);
-    assert_eq!(running.receive("source"), "up");
-    let (code, _, said) = said_by(launcher(folder.path(), &["status"]).uid(user));
+    let running = Running::start_and_wait(&folder, "test-seen");
+    let status = said_by(launcher(folder.path(), &["status"]).uid(user));
     running.signal(Signal::SIGTERM);
     running.end_well();
-    assert_eq!(code, 1, "{said}");
     let way = "user root runs graph test-seen: `sudo -u root backcast status`";
-    assert!(said.contains(way), "{said}");
+    assert_ends(status, 1, way);
 }
 
 #[test]
 fn others_have_no_rights_on_the_files_of_a_graph() {
     let name = "test-rights";
     let folder = waiting_graph();
-    let mut running = Running::start(&folder, &["--graph", name]);
-    assert_eq!(running.receive("source"), "up");
+    let running = Running::start_and_wait(&folder, name);
     let files = shared_memory_of(name);
     assert!(files.len() > 3, "{files:?}");
     for file in files {
@@ -118,8 +111,7 @@ fn others_have_no_rights_on_the_files_of_a_graph() {
 fn a_graph_whose_files_are_removed_is_started_again_as_a_whole() {
     let name = "test-cleaned";
     let folder = waiting_graph();
-    let mut running = Running::start(&folder, &["--graph", name]);
-    assert_eq!(running.receive("source"), "up");
+    let mut running = Running::start_and_wait(&folder, name);
     let socket = transport::control_socket(&transport::GraphName::new(name).unwrap());
     remove_files_of(socket.parent().unwrap(), &format!("_{name}."));
     assert_eq!(running.receive("source"), "up", "a second time");
@@ -147,16 +139,18 @@ fn a_graph_is_asked_restarted_in_part_and_stopped_from_elsewhere() {
         "id: source, outputs: [scan], args: \"-c 'echo up; exec sleep 1000'\"",
         "id: other, args: \"-c 'trap : TERM; while true; do sleep 0.1; done'\"",
     ]);
-    let mut running = Running::start(&folder, &["--graph", name]);
-    assert_eq!(running.receive("source"), "up");
-    let ask = |args: &[&str]| {
-        said_by(&mut launcher(
-            folder.path(),
-            &[args, &["--graph", name]].concat(),
-        ))
+    let mut running = Running::start_and_wait(&folder, name);
+    let ask = |args: &str| {
+        let args = format!("{args} --graph {name}");
+        let args: Vec<&str> = args.split(' ').collect();
+        said_by(&mut launcher(folder.path(), &args))
     };
-    let (code, stdout, said) = ask(&["status", "--json"]);
-    assert_eq!(code, 0, "{said}");
+    let done = |args: &str| {
+        let (code, stdout, said) = ask(args);
+        assert_eq!(code, 0, "{args}: {said}");
+        stdout
+    };
+    let stdout = done("status --json");
     assert_follows("status", &stdout);
     let status: serde_json::Value = serde_json::from_str(&stdout).unwrap();
     assert_eq!(
@@ -165,32 +159,21 @@ fn a_graph_is_asked_restarted_in_part_and_stopped_from_elsewhere() {
     );
     let before = status["nodes"][0]["pid"].clone();
 
-    assert_ends(
-        ask(&["restart", "sauce"]),
-        2,
-        "no node sauce: allowed are source",
-    );
-    let (code, _, said) = ask(&["restart", "source"]);
-    assert_eq!(code, 0, "{said}");
+    let unknown = "no node sauce: allowed are source";
+    assert_ends(ask("restart sauce"), 2, unknown);
+    done("restart source");
     assert_eq!(running.receive("source"), "up", "a second time");
-    let (_, stdout, _) = ask(&["status", "--json"]);
-    let status: serde_json::Value = serde_json::from_str(&stdout).unwrap();
+    let status: serde_json::Value = serde_json::from_str(&done("status --json")).unwrap();
     assert_ne!(status["nodes"][0]["pid"], before);
     assert_eq!(status["nodes"][0]["restarts"], 1);
-    assert!(ask(&["status"]).1.contains("source               running"));
+    assert!(done("status").contains("source               running"));
 
-    for (action, expected) in [
-        ("start", "there is no /bin/recorder"),
-        ("stop", "nothing is being recorded"),
-    ] {
-        let (code, _, said) = ask(&["record", action]);
-        assert!(code == 2 && said.contains(expected), "{said}");
-    }
+    assert_ends(ask("record start"), 2, "there is no /bin/recorder");
+    assert_ends(ask("record stop"), 2, "nothing is being recorded");
 
-    let (code, stdout, said) = ask(&["logs", "backcast"]);
-    assert_eq!(code, 0, "{said}");
+    let stdout = done("logs backcast");
     assert!(stdout.contains("source is restarted from"), "{stdout}");
-    let (_, stdout, _) = ask(&["logs", "--json"]);
+    let stdout = done("logs --json");
     assert!(stdout.contains("restarted"), "{stdout}");
     stdout.lines().for_each(|line| assert_follows("logs", line));
 
@@ -202,8 +185,7 @@ fn a_graph_is_asked_restarted_in_part_and_stopped_from_elsewhere() {
     lines.read_line(&mut first).unwrap();
     assert!(first.contains("backcast | "), "{first}");
 
-    let (code, _, said) = ask(&["stop"]);
-    assert_eq!(code, 0, "{said}");
+    done("stop");
     let graph = GraphName::new(name).unwrap();
     assert!(!transport::is_launched(&graph), "its name is free at once");
     running.end_well();
@@ -212,7 +194,7 @@ fn a_graph_is_asked_restarted_in_part_and_stopped_from_elsewhere() {
     let said = String::from_utf8(followed.stderr).unwrap();
     assert_eq!(followed.status.code(), Some(0), "{said}");
     assert!(said.contains("graph test-control has ended"), "{said}");
-    assert_ends(ask(&["stop"]), 1, "no launcher of graph test-control");
+    assert_ends(ask("stop"), 1, "no launcher of graph test-control");
 }
 
 #[test]

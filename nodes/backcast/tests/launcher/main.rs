@@ -11,7 +11,7 @@ use std::io::{BufRead, BufReader, Lines, Read};
 use std::os::unix::net::UnixDatagram;
 use std::os::unix::process::{CommandExt, ExitStatusExt};
 use std::path::Path;
-use std::process::{Child, ChildStderr, Command, ExitStatus, Output, Stdio};
+use std::process::{Child, ChildStderr, Command, ExitStatus, Stdio};
 
 use messages::{NodeState, topic};
 use nix::sys::signal::{Signal, kill};
@@ -19,6 +19,7 @@ use nix::sys::stat::Mode;
 use nix::unistd::{Pid, mkfifo};
 use tempfile::TempDir;
 use tests::needs::Need;
+use tests::{assert_ends, said_by};
 use transport::testing::{wait_for_health, wait_until};
 use transport::{Graph, GraphName};
 
@@ -28,11 +29,8 @@ fn graph(nodes: &[&str]) -> TempDir {
         .iter()
         .map(|n| format!("  - {{path: /bin/sh, {n}}}\n"))
         .collect();
-    fs::write(
-        folder.path().join("dataflow.yaml"),
-        format!("nodes:\n{nodes}"),
-    )
-    .unwrap();
+    let text = format!("nodes:\n{nodes}");
+    fs::write(folder.path().join("dataflow.yaml"), text).unwrap();
     folder
 }
 
@@ -55,36 +53,15 @@ fn launcher(folder: &Path, args: &[&str]) -> Command {
         .args(args)
         .current_dir(folder)
         .env_remove("BACKCAST_GRAPH")
-        .env_remove("RUST_LOG");
-    command
+        .env_remove("RUST_LOG")
         .stdin(Stdio::null())
         .stdout(Stdio::piped())
         .stderr(Stdio::piped());
     command
 }
 
-/// Runs to the end; returns exit code, standard output and standard error.
-fn said_by(command: &mut Command) -> (i32, String, String) {
-    let Output {
-        status,
-        stdout,
-        stderr,
-    } = command.output().unwrap();
-    let text = |bytes| String::from_utf8(bytes).unwrap();
-    (status.code().unwrap(), text(stdout), text(stderr))
-}
-
 fn run(nodes: &[&str], args: &[&str]) -> (i32, String, String) {
     said_by(&mut launcher(graph(nodes).path(), args))
-}
-
-/// Asserts the exit code and a part of standard error.
-#[track_caller]
-fn assert_ends((code, _, stderr): (i32, String, String), expected: i32, part: &str) {
-    assert!(
-        code == expected && stderr.contains(part),
-        "{code}: {stderr}"
-    );
 }
 
 struct Running {
@@ -99,14 +76,19 @@ impl Running {
         Running { child, said }
     }
 
+    /// Starts a graph of this name and waits until its source says `up`.
+    fn start_and_wait(folder: &TempDir, name: &str) -> Self {
+        let mut running = Running::start(folder, &["--graph", name]);
+        assert_eq!(running.receive("source"), "up");
+        running
+    }
+
     fn receive(&mut self, node: &str) -> String {
         let mark = format!("{node} | ");
-        let all = self.said.by_ref().map(Result::unwrap);
-        let mut received =
-            all.filter_map(|line| line.trim_start().strip_prefix(&mark).map(ToOwned::to_owned));
-        received
-            .next()
-            .unwrap_or_else(|| panic!("{node} said nothing more"))
+        let mut all = self.said.by_ref().map(Result::unwrap);
+        let received =
+            all.find_map(|line| line.trim_start().strip_prefix(&mark).map(ToOwned::to_owned));
+        received.unwrap_or_else(|| panic!("{node} said nothing more"))
     }
 
     fn signal(&self, signal: Signal) {

@@ -81,16 +81,9 @@ fn a_node_that_only_shows_fails_for_good_and_the_rest_goes_on() {
     ]);
     mkfifo(&folder.path().join("pipe"), Mode::S_IRWXU).unwrap();
     let mut running = Running::start(&folder, &["--graph", name]);
-    let lost = loop {
-        let line = running.receive("backcast");
-        if line.contains("continues without") {
-            break line;
-        }
-    };
-    assert!(
-        lost.starts_with("node shown ended with exit status: 7 after 1 restart"),
-        "{lost}"
-    );
+    let goes_on = "node shown ended with exit status: 7 after 1 restart in short time; see its last \
+                   log lines; the graph continues without shown";
+    while running.receive("backcast") != goes_on {}
 
     // Processes that ask later receive the state as well.
     let member = Graph::join_named("tester", &GraphName::new(name).unwrap()).unwrap();

@@ -7,8 +7,8 @@ use ros::{LaserScan, OccupancyGridMsg};
 use serde_json::Value;
 
 use crate::drawn::{
-    HERE, THERE, assert_ends, folder, framed_map, map_message, mount_message, record, recordings,
-    room, run, scan, scan_at, truth_at,
+    HERE, THERE, assert_refused, folder, framed_map, map_message, mount_message, output, parsed,
+    record, recordings, room, run, scan, scan_at, truth_at,
 };
 
 /// Returns the map of the room with only the first `rows` rows known.
@@ -23,16 +23,13 @@ fn known_rows(rows: usize) -> (&'static str, Message) {
 
 fn verdicts(folder: &std::path::Path, arguments: &str) -> (i32, Vec<String>, String) {
     let (code, stdout, stderr) = run(folder, &format!("locate --json {arguments}"));
-    let verdict = |line: &str| {
-        let object: Value = serde_json::from_str(line).unwrap();
-        object["verdict"].as_str().unwrap().to_owned()
-    };
-    (code, stdout.lines().map(verdict).collect(), stderr)
+    let verdict = |object: &Value| object["verdict"].as_str().unwrap().to_owned();
+    (code, parsed(&stdout).iter().map(verdict).collect(), stderr)
 }
 
 #[test]
 fn the_newest_map_before_a_scan_counts() {
-    let grows = [
+    let folder = folder(&[
         known_rows(0),
         scan_at(1, HERE),
         known_rows(2),
@@ -40,8 +37,7 @@ fn the_newest_map_before_a_scan_counts() {
         scan_at(2, HERE),
         known_rows(0),
         scan_at(3, THERE),
-    ];
-    let folder = folder(&grows);
+    ]);
     let (code, found, stderr) = verdicts(folder.path(), "r.mcap");
     assert_eq!(found, ["NoScan", "Unique", "Unique"], "{stderr}");
     assert_eq!(code, 0);
@@ -51,13 +47,9 @@ fn the_newest_map_before_a_scan_counts() {
     assert_eq!(stderr, note);
     let (_, stdout, _) = run(folder.path(), "locate r.mcap");
     let refused = stdout.lines().nth(1).unwrap();
-    assert!(
-        refused.ends_with(
-            "r.mcap: no map up to this scan can be searched: the map has no occupied cell: there is \
-             nothing that a laser could see"
-        ),
-        "{refused}"
-    );
+    let no_map = "r.mcap: no map up to this scan can be searched: the map has no occupied cell: \
+                  there is nothing that a laser could see";
+    assert!(refused.ends_with(no_map), "{refused}");
 }
 
 #[test]
@@ -86,15 +78,10 @@ fn where_every_scan_is_refused_there_is_an_error() {
     let (code, found, stderr) = verdicts(folder.path(), "r.mcap");
     assert_eq!((code, found.len()), (1, 2));
     assert!(stderr.starts_with(&said(2)), "{stderr}");
-    let (code, stdout, stderr) = run(folder.path(), "evaluate r.mcap");
-    assert_eq!((code, stdout.as_str()), (1, ""));
-    assert!(stderr.starts_with(&said(1)), "{stderr}");
+    assert_refused(folder.path(), "evaluate r.mcap", 1, &said(1));
     let (code, stdout, _) = run(folder.path(), "doctor r.mcap");
-    assert_eq!(code, 1);
-    assert!(
-        stdout.contains("problem  /scan: 2 odd scans; of the first angle_increment is 0"),
-        "{stdout}"
-    );
+    let odd = "problem  /scan: 2 odd scans; of the first angle_increment is 0";
+    assert!(code == 1 && stdout.contains(odd), "{stdout}");
 }
 
 #[test]
@@ -106,13 +93,11 @@ fn the_topic_is_named_where_several_could_be_meant() {
         on("/rear/scan", 2, THERE),
         on("/front/scan", 3, THERE),
     ]);
-    for (options, scans) in [
-        ("--scan-topic /front/scan", 2),
-        ("--scan-topic /rear/scan", 1),
-    ] {
-        let (code, found, stderr) = verdicts(folder.path(), &format!("r.mcap {options}"));
-        assert_eq!((code, stderr.as_str()), (0, ""), "{options}");
-        assert_eq!(found, vec!["Unique"; scans], "{options}");
+    for (topic, scans) in [("/front/scan", 2), ("/rear/scan", 1)] {
+        let arguments = format!("r.mcap --scan-topic {topic}");
+        let (code, found, stderr) = verdicts(folder.path(), &arguments);
+        assert_eq!((code, stderr.as_str()), (0, ""), "{topic}");
+        assert_eq!(found, vec!["Unique"; scans], "{topic}");
     }
     let several = "/front/scan, /rear/scan, and none is called /scan: name one with --scan-topic\n";
     let wrong = "has no sensor_msgs/msg/LaserScan on /scan; it has /front/scan, /rear/scan\n";
@@ -122,17 +107,10 @@ fn the_topic_is_named_where_several_could_be_meant() {
         ("--scan-topic /scan", wrong),
         ("--scan-topic /rear/scan --scan-topic /front/scan", unknown),
     ] {
-        assert_ends(
-            run(folder.path(), &format!("locate r.mcap {options}")),
-            1,
-            said,
-        );
+        assert_refused(folder.path(), &format!("locate r.mcap {options}"), 1, said);
     }
-    let (_, stdout, _) = run(folder.path(), "info r.mcap --scan-topic /rear/scan");
-    assert!(
-        stdout.contains("taken: map /map, scans /rear/scan"),
-        "{stdout}"
-    );
+    let info = output(folder.path(), "info r.mcap --scan-topic /rear/scan");
+    assert!(info.contains("taken: map /map, scans /rear/scan"), "{info}");
     let (code, _, _) = run(folder.path(), "doctor r.mcap --scan-topic /rear/scan");
     assert_eq!(code, 0);
 }
@@ -162,40 +140,24 @@ fn a_folder_stands_wherever_a_recording_does() {
     let folder = tempfile::tempdir().unwrap();
     let bag = folder.path().join("drive");
     fs::create_dir(&bag).unwrap();
-    record(
-        &bag.join("drive_0.mcap"),
-        &[
-            map_message(),
-            mount_message(),
-            scan_at(1, HERE),
-            truth_at(1, HERE),
-        ],
-    );
-    record(
-        &bag.join("drive_1.mcap"),
-        &[scan_at(2, THERE), truth_at(2, THERE)],
-    );
-    for files in [
-        "drive",
-        "--bag drive",
-        "drive/drive_0.mcap drive/drive_1.mcap",
-    ] {
+    let (scan, truth) = (scan_at(1, HERE), truth_at(1, HERE));
+    let first = [map_message(), mount_message(), scan, truth];
+    record(&bag.join("drive_0.mcap"), &first);
+    let second = [scan_at(2, THERE), truth_at(2, THERE)];
+    record(&bag.join("drive_1.mcap"), &second);
+    let both = "drive/drive_0.mcap drive/drive_1.mcap";
+    for files in ["drive", "--bag drive", both] {
         let (code, found, stderr) = verdicts(folder.path(), files);
         assert_eq!((code, stderr.as_str()), (0, ""), "{files}");
         assert_eq!(found, ["Unique", "Unique"], "{files}");
     }
-    let (code, stdout, stderr) = run(folder.path(), "evaluate --json drive");
-    assert_eq!((code, stderr.as_str()), (0, ""));
-    let figures: Value = serde_json::from_str(&stdout).unwrap();
+    let figures = &parsed(&output(folder.path(), "evaluate --json drive"))[0];
     assert_eq!(figures["truths"], 2);
     assert_eq!(figures["unique"], 2);
-    let (_, stdout, _) = run(folder.path(), "info drive");
-    assert!(
-        stdout.starts_with("drive: ") && stdout.contains("6 messages in 2 chunks"),
-        "{stdout}"
-    );
-    let (code, _, stderr) = run(folder.path(), "plot --bag drive --out scan.png");
-    assert_eq!((code, stderr.as_str()), (0, ""));
+    let info = output(folder.path(), "info drive");
+    let is_whole = info.starts_with("drive: ") && info.contains("6 messages in 2 chunks");
+    assert!(is_whole, "{info}");
+    output(folder.path(), "plot --bag drive --out scan.png");
     let (code, _, stderr) = run(folder.path(), "convert drive drive.mcap");
     assert_eq!(code, 0, "{stderr}");
     let (_, found, _) = verdicts(folder.path(), "drive.mcap");

@@ -9,8 +9,9 @@ use nix::sys::signal::{Signal, kill};
 use nix::unistd::Pid;
 use recording::{Kind, Message, Recording};
 use ros::LaserScan;
+use tests::assert_ends;
 
-use crate::drawn::{assert_ends, backcast, folder, recordings, run};
+use crate::drawn::{backcast, folder, recordings, run};
 
 #[test]
 fn a_destination_that_exists_or_is_no_recording_is_refused() {
@@ -18,9 +19,7 @@ fn a_destination_that_exists_or_is_no_recording_is_refused() {
     let convert = |arguments: &str| run(corridor.folder.path(), &format!("convert {arguments}"));
     assert_ends(convert("a.log a.mcap"), 0, "37 scans, 37 poses of");
     corridor.assert_same("a.mcap");
-    let (code, _, said) = convert("a.log a.mcap");
-    assert_eq!(code, 2, "what exists is kept");
-    assert!(said.contains("a.mcap is there already"), "{said}");
+    assert_ends(convert("a.log a.mcap"), 2, "a.mcap is there already");
     assert_eq!(convert("a.log new/folder/a.mcap").0, 0);
     assert_eq!(convert("a.log a.mcap --force").0, 0);
     assert_eq!(convert("- b.mcap").0, 2, "a pipe cannot be read twice");
@@ -35,9 +34,8 @@ fn what_is_interrupted_leaves_no_file() {
     // Takes far longer to convert than to interrupt.
     let long = corridor.log.repeat(500);
     fs::write(corridor.folder.path().join("long.log"), long).unwrap();
-    let mut child = backcast(corridor.folder.path(), "convert long.log a.mcap")
-        .spawn()
-        .unwrap();
+    let mut convert = backcast(corridor.folder.path(), "convert long.log a.mcap");
+    let mut child = convert.spawn().unwrap();
     let file = corridor.folder.path().join("a.mcap");
     while !file.exists() {
         assert!(child.try_wait().unwrap().is_none(), "it ended by itself");
@@ -51,12 +49,11 @@ fn what_is_interrupted_leaves_no_file() {
 fn scans(file: &Path) -> Vec<LaserScan> {
     let recording = Recording::open(file).unwrap();
     let records = recording.records_of(&[Kind::Scan]);
-    let scans = records.filter_map(|record| match record.unwrap() {
-        record if &*record.topic != "/scan" => None,
-        record => match record.message {
-            Message::Scan(scan) => Some(*Box::new(scan)),
-            other => panic!("asked for scans: {other:?}"),
-        },
+    let records = records.map(Result::unwrap);
+    let scans = records.filter_map(|record| match record.message {
+        _ if &*record.topic != "/scan" => None,
+        Message::Scan(scan) => Some(scan),
+        other => panic!("asked for scans: {other:?}"),
     });
     scans.collect()
 }
@@ -77,10 +74,8 @@ fn log(recording: &Recording) -> String {
                 let mount = recording.base_from_laser(&scan.header.frame_id).unwrap();
                 let base_from_laser = mount.map_or(Pose::IDENTITY, |mount| mount.base_from_laser);
                 let laser = odom_from_base.then(base_from_laser);
-                let poses = [laser, odom_from_base];
-                let poses = poses
-                    .map(|p| format!("{} {} {}", p.x, p.y, p.yaw))
-                    .join(" ");
+                let pose = |p: Pose| format!("{} {} {}", p.x, p.y, p.yaw);
+                let poses = [laser, odom_from_base].map(pose).join(" ");
                 let ranges: Vec<String> = scan.ranges.iter().map(f32::to_string).collect();
                 let (beams, ranges) = (ranges.len(), ranges.join(" "));
                 let time = scan.header.stamp.as_ns() as f64 / 1e9;
@@ -160,11 +155,8 @@ fn where_nothing_can_be_converted_no_file_is_left() {
     ] {
         fs::write(folder.path().join("b.log"), content).unwrap();
         let (code, _, said) = run(folder.path(), "convert b.log b.mcap");
-        assert_eq!(code, 1, "{said}");
-        assert!(
-            said.contains(reason) && said.contains("no file was written"),
-            "{said}"
-        );
+        let is_named = said.contains(reason) && said.contains("no file was written");
+        assert!(code == 1 && is_named, "{said}");
         assert!(!folder.path().join("b.mcap").exists(), "{content:?}");
     }
     // A recording is no source.
@@ -173,14 +165,14 @@ fn where_nothing_can_be_converted_no_file_is_left() {
     assert!(!folder.path().join("c.log").exists(), "{said}");
     // An unsupported kind of file is reported by the reader of recordings.
     fs::write(folder.path().join("drive.bag"), "#ROSBAG V2.0\nrest").unwrap();
-    assert_ends(
-        run(folder.path(), "convert drive.bag b.mcap"),
-        1,
-        "drive.bag",
-    );
-    assert_ends(
-        run(folder.path(), "convert none.log b.mcap"),
-        1,
-        "cannot read none.log",
-    );
+    for (file, reason) in [
+        ("drive.bag", "drive.bag"),
+        ("none.log", "cannot read none.log"),
+    ] {
+        assert_ends(
+            run(folder.path(), &format!("convert {file} b.mcap")),
+            1,
+            reason,
+        );
+    }
 }

@@ -1,11 +1,12 @@
-//! `backcast bench docs` as a process, on a checkout whose recordings are others than the pages say.
+//! `backcast bench docs` as a process, on a checkout whose recordings are others than the pages say,
+//! and options of `bench`.
 
 use std::fs;
 use std::path::Path;
 
 use tempfile::TempDir;
 
-use crate::drawn::{recordings, run};
+use crate::drawn::{assert_refused, recordings, run};
 
 /// Creates a checkout with the pages of this one, and the shortest recording in place of all three.
 fn checkout() -> TempDir {
@@ -55,30 +56,23 @@ fn figures_of_other_recordings_are_named_and_not_written() {
 #[test]
 fn wrong_folders_and_options_are_refused() {
     let root = checkout();
+    let no_checkout = "recordings has no README.md: needed is a checkout";
+    let no_data = "there is no recordings/evaluation/intel_queries.mcap: --data";
+    let (docs, paper) = ("`bench docs` takes --root, --data,", "`bench paper` takes");
     for (options, expected) in [
-        (
-            "--root recordings",
-            "recordings has no README.md: needed is a checkout",
-        ),
-        (
-            "--data recordings",
-            "there is no recordings/evaluation/intel_queries.mcap: --data",
-        ),
-        ("--constants", "--data"),
-        ("--check --times", "cannot be used with"),
-        ("--quick", "`bench docs` takes --root, --data,"),
-        ("--json", "`bench docs` takes --root, --data,"),
-        ("--out there", "`bench docs` takes --root, --data,"),
+        ("docs --root recordings", no_checkout),
+        ("docs --data recordings", no_data),
+        ("docs --constants", "--data"),
+        ("docs --check --times", "cannot be used with"),
+        ("docs --quick", docs),
+        ("docs --json", docs),
+        ("docs --out there", docs),
+        ("paper --size 100", paper),
+        ("paper --json", paper),
+        ("paper --part figure9", "invalid value"),
+        ("table1 --check", "are for `bench docs`, not for table1"),
+        ("table1 --quick --out here", "are for `bench paper`"),
     ] {
-        let (code, _, stderr) = run(root.path(), &format!("bench docs {options}"));
-        assert!(
-            code == 2 && stderr.contains(expected),
-            "{options}: {stderr}"
-        );
+        assert_refused(root.path(), &format!("bench {options}"), 2, expected);
     }
-    let (code, _, stderr) = run(root.path(), "bench table1 --check");
-    assert!(
-        code == 2 && stderr.contains("are for `bench docs`, not for table1"),
-        "{stderr}"
-    );
 }

@@ -7,10 +7,11 @@ use geometry::Pose;
 use recording::Message;
 use serde_json::Value;
 use tempfile::TempDir;
+use tests::assert_ends;
 
 use crate::drawn::{
-    BASE_FROM_LASER, HERE, SECOND_NS, THERE, assert_ends, map_from_laser, map_message,
-    mount_message, record, recordings, run, scan, scan_at, truth_at,
+    BASE_FROM_LASER, HERE, SECOND_NS, THERE, assert_refused, map_from_laser, map_message,
+    mount_message, output, parsed, record, recordings, run, scan, scan_at, truth_at,
 };
 
 /// Creates a folder with `r.mcap`: a map and five scans. The second has no ground truth, the third
@@ -41,16 +42,18 @@ fn counts(object: &Value, keys: [&str; 2]) -> [u64; 2] {
     keys.map(|key| object[key].as_u64().unwrap())
 }
 
-fn objects(stdout: &str) -> Vec<Value> {
-    let lines = stdout.lines().map(serde_json::from_str);
-    lines.map(Result::unwrap).collect()
+/// Evaluates `r.mcap` with remarks, if any; returns its object.
+fn judged(folder: &Path, options: &str) -> Value {
+    let (code, stdout, stderr) = run(folder, &format!("evaluate --json {options} r.mcap"));
+    assert_eq!(code, 0, "{stderr}");
+    parsed(&stdout).remove(0)
 }
 
 #[test]
 fn the_object_counts_what_was_found() {
     let (code, stdout, stderr) = run(folder().path(), "evaluate --json r.mcap");
     assert_eq!(code, 0, "{stderr}");
-    let object = &objects(&stdout)[0];
+    let object = &parsed(&stdout)[0];
     assert_eq!(object["bag"], "r.mcap");
     assert_eq!(object["map_cells"], 240);
     // Cells of walls are not searchable.
@@ -84,18 +87,11 @@ fn the_object_counts_what_was_found() {
 #[test]
 fn of_the_scans_taken_those_with_a_truth_are_judged() {
     let folder = folder();
-    let taken = |every| {
-        let (code, stdout, stderr) = run(
-            folder.path(),
-            &format!("evaluate --json --every {every} r.mcap"),
-        );
-        assert_eq!(code, 0, "{stderr}");
-        let object = &objects(&stdout)[0];
+    for (every, taken) in [(3, [2, 2]), (100, [1, 1])] {
+        let object = judged(folder.path(), &format!("--every {every}"));
         assert_eq!(object["success_50cm_10deg"], 1.0);
-        counts(object, ["scans", "truths"])
-    };
-    assert_eq!(taken(3), [2, 2], "the first and the fourth");
-    assert_eq!(taken(100), [1, 1]);
+        assert_eq!(counts(&object, ["scans", "truths"]), taken, "{every}");
+    }
 }
 
 #[test]
@@ -104,24 +100,21 @@ fn a_file_that_cannot_be_evaluated_does_not_keep_the_others() {
     let path = |name: &str| folder.path().join(name);
     let bytes = fs::read(path("r.mcap")).unwrap();
     fs::write(path("cut.mcap"), &bytes[..bytes.len() - 4]).unwrap();
-    record(&path("untrue.mcap"), &[map_message(), scan_at(1, HERE)]);
-    record(
-        &path("other.mcap"),
-        &[map_message(), scan_at(1, HERE), truth_at(2, HERE)],
-    );
-    record(
-        &path("mapless.mcap"),
-        &[scan_at(1, HERE), truth_at(1, HERE)],
-    );
-    record(&path("blind.mcap"), &[map_message(), truth_at(1, HERE)]);
+    let (map, scan, truth) = (map_message, || scan_at(1, HERE), |at| truth_at(at, HERE));
+    record(&path("untrue.mcap"), &[map(), scan()]);
+    record(&path("other.mcap"), &[map(), scan(), truth(2)]);
+    record(&path("mapless.mcap"), &[scan(), truth(1)]);
+    record(&path("blind.mcap"), &[map(), truth(1)]);
     let (code, stdout, stderr) = run(
         folder.path(),
         "evaluate --json none.mcap cut.mcap untrue.mcap other.mcap mapless.mcap blind.mcap \
          r.mcap --every 4",
     );
     assert_eq!(code, 1, "{stderr}");
-    assert_eq!(objects(&stdout).len(), 1, "{stdout}");
-    assert_eq!(objects(&stdout)[0]["bag"], "r.mcap");
+    let [object] = &parsed(&stdout)[..] else {
+        panic!("{stdout}");
+    };
+    assert_eq!(object["bag"], "r.mcap");
     let expected = [
         "backcast: cannot read the recording none.mcap: No such file",
         "backcast: cut.mcap: the file is cut short",
@@ -141,17 +134,15 @@ fn a_file_that_cannot_be_evaluated_does_not_keep_the_others() {
 fn requirements_of_several_files_are_reported_with_their_total() {
     let folder = folder();
     let path = |name: &str| folder.path().join(name);
-    record(
-        &path("s.mcap"),
-        &[map_message(), scan_at(1, HERE), truth_at(1, HERE)],
-    );
+    let sound = [map_message(), scan_at(1, HERE), truth_at(1, HERE)];
+    record(&path("s.mcap"), &sound);
     let evaluate = |options: &str| run(folder.path(), &format!("evaluate {options}"));
     let required = "--min-truths 2 --min-unique 80";
     let (code, stdout, stderr) = evaluate(&format!(
         "--json {required} --junit out/e.xml r.mcap s.mcap none.mcap"
     ));
     assert_eq!(code, 1, "{stderr}");
-    let objects = objects(&stdout);
+    let objects = parsed(&stdout);
     assert_eq!(objects.len(), 3, "{stdout}");
     let total = &objects[2]["total"];
     assert_eq!(counts(total, ["truths", "unique"]), [5, 4]);
@@ -164,11 +155,8 @@ fn requirements_of_several_files_are_reported_with_their_total() {
     }
     let report = fs::read_to_string(path("out/e.xml")).unwrap();
     assert!(report.contains("failures=\"2\" errors=\"1\""), "{report}");
-    assert_ends(
-        evaluate("--junit out/e.xml s.mcap"),
-        2,
-        "out/e.xml is there already",
-    );
+    let again = evaluate("--junit out/e.xml s.mcap");
+    assert_ends(again, 2, "out/e.xml is there already");
     let (code, _, stderr) = evaluate(&format!(
         "{required} --total --junit out/e.xml --force r.mcap s.mcap"
     ));
@@ -185,15 +173,10 @@ fn truths_at_a_rate_of_their_own_are_interpolated() {
         truth_at(3, HERE),
     ];
     record(&folder.path().join("r.mcap"), &messages);
-    assert_ends(
-        run(folder.path(), "evaluate r.mcap"),
-        1,
-        "`evaluate --truth-gap-s`",
-    );
-    let (code, stdout, stderr) = run(folder.path(), "evaluate --json --truth-gap-s 2 r.mcap");
-    assert_eq!(code, 0, "{stderr}");
-    let object = &objects(&stdout)[0];
-    assert_eq!(counts(object, ["truths", "unique"]), [1, 1]);
+    let hint = "`evaluate --truth-gap-s`";
+    assert_refused(folder.path(), "evaluate r.mcap", 1, hint);
+    let object = judged(folder.path(), "--truth-gap-s 2");
+    assert_eq!(counts(&object, ["truths", "unique"]), [1, 1]);
 }
 
 #[test]
@@ -204,9 +187,8 @@ fn wrong_use_is_reported() {
         ("--every 0 r.mcap", "0 is not in 1.."),
         ("--headings 12 r.mcap", "a multiple of 8"),
     ] {
-        let (code, stdout, stderr) = run(folder.path(), &format!("evaluate {options}"));
-        assert_eq!((code, stdout.as_str()), (2, ""), "{stderr}");
-        assert!(stderr.contains(expected), "{stderr}");
+        let arguments = format!("evaluate {options}");
+        assert_refused(folder.path(), &arguments, 2, expected);
     }
     let (code, _, stderr) = run(folder.path(), "evaluate --map none.yaml a.mcap b.mcap");
     assert_eq!((code, stderr.lines().count()), (1, 1), "{stderr}");
@@ -215,9 +197,7 @@ fn wrong_use_is_reported() {
 
 fn real(bag: &Path, options: &str) -> Value {
     let arguments = format!("evaluate --json {options} {}", bag.display());
-    let (code, stdout, stderr) = run(Path::new("."), &arguments);
-    assert_eq!((code, stderr.as_str()), (0, ""));
-    objects(&stdout).remove(0)
+    parsed(&output(Path::new("."), &arguments)).remove(0)
 }
 
 fn share(object: &Value, key: &str) -> f64 {
@@ -293,44 +273,31 @@ fn answers_of_the_base_are_carried_to_the_laser() {
     let (code, stdout, stderr) = evaluate("a.json --json m.mcap");
     assert_eq!(code, 0, "{stderr}");
     tests::schemas::assert_follows("evaluate_answers", stdout.trim_end());
-    let object = &objects(&stdout)[0];
+    let object = &parsed(&stdout)[0];
     assert_eq!(counts(object, ["answered", "truths"]), [2, 3]);
     assert_eq!(share(object, "success_50cm_10deg"), 1.0 / 3.0, "{object}");
     assert_eq!(counts(object, ["unique_wrong", "wrong_scans"]), [1, 1]);
     assert!(share(&object["error_m"], "median") < 1e-9, "{object}");
-    let (code, stdout, stderr) = evaluate("a.json --answer-gap-s 3 --max-wrong 0 m.mcap");
-    assert_eq!(code, 1, "{stderr}");
-    assert!(
-        stderr.contains("m.mcap: Unique and wrong are 1, --max-wrong 0"),
-        "{stderr}"
-    );
+    let judged = evaluate("a.json --answer-gap-s 3 --max-wrong 0 m.mcap");
     for line in [
         "truths 3, with an answer 3 of the 2",
         "within 0.5 m and 10° 66.7 %",
         "0.80..0.90",
     ] {
-        assert!(stdout.contains(line), "{line}: {stdout}");
+        assert!(judged.1.contains(line), "{line}: {}", judged.1);
     }
+    let missed = "m.mcap: Unique and wrong are 1, --max-wrong 0";
+    assert_ends(judged, 1, missed);
     fs::write(&file, pose(7, HERE)).unwrap();
+    let no_stamp = "no pose, from 7.000 to 7.000 s, has the stamp";
+    let several = "--answers are those to one recording; 2 are given";
     for (options, code, expected) in [
-        (
-            "a.json m.mcap",
-            1,
-            "no pose, from 7.000 to 7.000 s, has the stamp",
-        ),
+        ("a.json m.mcap", 1, no_stamp),
         ("none.json m.mcap", 1, "cannot read none.json"),
         ("m.mcap m.mcap", 1, "cannot read m.mcap"),
-        (
-            "a.json m.mcap m.mcap",
-            2,
-            "--answers are those to one recording; 2 are given",
-        ),
+        ("a.json m.mcap m.mcap", 2, several),
     ] {
-        let (found, _, stderr) = evaluate(options);
-        assert!(
-            found == code && stderr.contains(expected),
-            "{options}: {stderr}"
-        );
+        assert_ends(evaluate(options), code, expected);
     }
 }
 

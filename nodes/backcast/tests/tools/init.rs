@@ -1,18 +1,18 @@
 //! Tests of `backcast init` and `check`.
 
 use std::fs;
-use std::path::Path;
 
-use crate::drawn::{recordings, run};
+use crate::drawn::{assert_refused, recordings, run};
 
-fn init(folder: &Path, options: &str) -> (i32, String, String) {
+/// Returns the command line with the corridor's files in place of `DRIVE` and `MAP`.
+fn init(options: &str) -> String {
     let corridor = recordings().join("malaga_corridor");
-    let options = options.replace(
-        "DRIVE",
-        &corridor.join("recording.mcap").display().to_string(),
-    );
-    let options = options.replace("MAP", &corridor.join("map.yaml").display().to_string());
-    run(folder, &format!("init {options}"))
+    let corridor = corridor.display();
+    let options = options.replace("DRIVE", &format!("{corridor}/recording.mcap"));
+    format!(
+        "init {}",
+        options.replace("MAP", &format!("{corridor}/map.yaml"))
+    )
 }
 
 #[test]
@@ -29,26 +29,21 @@ fn a_descriptor_is_written_for_each_kind_of_source_and_is_sound() {
         ("replay.yaml", "--replay DRIVE --map MAP"),
         ("own_map.yaml", "--replay DRIVE"),
     ] {
-        let (code, stdout, stderr) = init(folder.path(), &format!("{options} --out {file}"));
-        assert_eq!(code, 0, "{stderr}");
-        assert!(stdout.contains(&format!("backcast run {file}")), "{stdout}");
-        let (code, stdout, stderr) = run(folder.path(), &format!("check {file}"));
-        assert_eq!(code, 0, "{stderr}");
-        assert!(
-            stdout.starts_with(&format!("{file} is sound\n\n")),
-            "{stdout}"
-        );
+        let done = |arguments: &str, part: &str| {
+            let (code, stdout, stderr) = run(folder.path(), arguments);
+            assert!(code == 0 && stdout.contains(part), "{stdout}{stderr}");
+        };
+        let written = format!("backcast run {file}");
+        done(&init(&format!("{options} --out {file}")), &written);
+        done(&format!("check {file}"), &format!("{file} is sound\n\n"));
     }
     let text = fs::read_to_string(folder.path().join("laser.yaml")).unwrap();
     let args = "--tcp 192.168.0.1:2112 --protocol cola-b --mount 0.2,0,-90";
     assert!(text.contains(args), "{text}");
 
-    // The same file name again.
-    let again = "--replay DRIVE --map MAP --out replay.yaml";
-    let (code, _, stderr) = init(folder.path(), again);
-    assert_eq!(code, 2);
-    assert!(stderr.contains("--force"), "{stderr}");
-    assert_eq!(init(folder.path(), &format!("{again} --force")).0, 0);
+    let again = init("--replay DRIVE --map MAP --out replay.yaml");
+    assert_refused(folder.path(), &again, 2, "--force");
+    assert_eq!(run(folder.path(), &format!("{again} --force")).0, 0);
 }
 
 #[test]
@@ -69,9 +64,7 @@ fn what_cannot_be_meant_leaves_no_file() {
         ("--replay DRIVE --map MAP --mount 1,2,3", 2, "/tf_static"),
         ("--ros2 --mount 1,2", 2, "X,Y,YAW_DEG"),
     ] {
-        let (found, stdout, stderr) = init(folder.path(), options);
-        assert_eq!((found, stdout.as_str()), (code, ""), "{options}: {stderr}");
-        assert!(stderr.contains(said), "{options}: {stderr}");
+        assert_refused(folder.path(), &init(options), code, said);
         assert!(!folder.path().join("dataflow.yaml").exists(), "{options}");
     }
 }
@@ -89,11 +82,9 @@ fn arguments_that_a_node_does_not_take_are_named() {
     fs::write(folder.path().join("g.yaml"), nodes).unwrap();
     let (code, stdout, stderr) = run(folder.path(), "check g.yaml");
     assert_eq!((code, stdout.as_str()), (1, ""), "{stderr}");
-    assert!(
-        stderr.contains("g.yaml: node m: unexpected argument '--mapp'"),
-        "{stderr}"
-    );
-    assert!(stderr.contains("\nnode w: "), "{stderr}");
+    for part in ["g.yaml: node m: unexpected argument '--mapp'", "\nnode w: "] {
+        assert!(stderr.contains(part), "{stderr}");
+    }
     assert!(!stderr.contains("node t"), "{stderr}");
     let map = recordings().join("malaga_corridor/map.yaml");
     let fewer = nodes

@@ -8,7 +8,8 @@ use ros::LaserScan;
 use serde_json::Value;
 
 use crate::drawn::{
-    HERE, folder, lines, map_message, objects, room, run, scan, scan_at, truth_at, word,
+    HERE, assert_names, assert_refused, folder, lines, map_message, objects, room, run, scan,
+    scan_at, truth_at, word,
 };
 
 #[test]
@@ -32,16 +33,9 @@ fn a_refused_scan_has_a_line_with_the_reason() {
     let reason = |i: usize| objects[i]["refused"].as_str().unwrap_or("none");
     assert_eq!(reason(0), "the scan is empty: it has no ranges");
     assert_eq!(reason(1), "none", "nothing returned, which is no fault");
-    assert!(
-        reason(2).starts_with("angle_increment is NaN"),
-        "{}",
-        reason(2)
-    );
-    assert!(
-        reason(3).starts_with("angle_increment is 0:"),
-        "{}",
-        reason(3)
-    );
+    for (i, start) in [(2, "angle_increment is NaN"), (3, "angle_increment is 0:")] {
+        assert!(reason(i).starts_with(start), "{}", reason(i));
+    }
     for object in &objects[..4] {
         assert_eq!(object["verdict"], "NoScan");
         assert_eq!(object["hypotheses"], Value::Array(Vec::new()));
@@ -57,11 +51,8 @@ fn a_refused_scan_has_a_line_with_the_reason() {
 
     let rows = lines(folder.path(), "");
     let (columns, reason) = rows[1].split_at(rows[0].len());
-    let dashes = columns
-        .split_whitespace()
-        .filter(|word| *word == "-")
-        .count();
-    assert_eq!((word(columns, 0), dashes), ("1.000".into(), 4));
+    let dashes = columns.split_whitespace().filter(|word| *word == "-");
+    assert_eq!((word(columns, 0), dashes.count()), ("1.000".into(), 4));
     assert_eq!(word(columns, 5), "NoScan");
     assert_eq!(reason, "  the scan is empty: it has no ranges");
     let (_, says) = rows[2].split_at(rows[0].len());
@@ -112,11 +103,7 @@ fn what_is_missing_or_broken_is_named() {
         (&no_map, "r.mcap --map empty.yaml", "no occupied cell"),
         (&no_map, "text.mcap", "text.mcap"),
     ] {
-        let (code, stdout, stderr) = run(folder.path(), &format!("locate --bag {options}"));
-        assert_eq!((code, stdout.as_str()), (1, ""), "{stderr}");
-        assert!(stderr.starts_with("backcast: "), "{stderr}");
-        assert!(stderr.contains(expected), "{expected}: {stderr}");
-        assert_eq!(stderr.lines().count(), 1, "{stderr}");
+        assert_names(folder.path(), &format!("locate --bag {options}"), expected);
     }
 }
 
@@ -132,7 +119,6 @@ fn a_recording_that_is_cut_short_gives_what_lies_before() {
     assert!(stderr.contains("r.mcap: the file is cut short"), "{stderr}");
     // Cut within the only chunk: the damage is reported, not missing scans.
     fs::write(&path, &bytes[..200]).unwrap();
-    let (code, stdout, stderr) = run(folder.path(), "locate --json --bag r.mcap");
-    assert_eq!((code, stdout.as_str()), (1, ""), "{stderr}");
-    assert!(stderr.contains("r.mcap: the file is cut short"), "{stderr}");
+    let cut = "r.mcap: the file is cut short";
+    assert_refused(folder.path(), "locate --json --bag r.mcap", 1, cut);
 }

@@ -8,7 +8,8 @@ use recording::Message;
 use tempfile::TempDir;
 
 use crate::drawn::{
-    HERE, THERE, assert_ends, folder, map_message, room, run, scan, scan_at, truth_at,
+    HERE, THERE, assert_names, assert_refused, folder, map_message, output, room, scan, scan_at,
+    truth_at,
 };
 
 /// Colour of the best place, which the legend uses as well.
@@ -26,8 +27,7 @@ fn drive() -> TempDir {
 
 /// Draws with these options, asserts success, and returns the file.
 fn plot(folder: &Path, options: &str, file: &str) -> Vec<u8> {
-    let (code, stdout, stderr) = run(folder, &format!("plot {options} --force --out {file}"));
-    assert_eq!((code, stderr.as_str()), (0, ""), "{options}: {stdout}");
+    let stdout = output(folder, &format!("plot {options} --force --out {file}"));
     assert!(stdout.starts_with(&format!("{file}: ")), "{stdout}");
     fs::read(folder.join(file)).unwrap()
 }
@@ -50,10 +50,8 @@ fn every_picture_of_a_recording_has_the_width_that_was_asked_for() {
 
         let svg = plot(drive.path(), &options, "p.svg");
         let svg = String::from_utf8(svg).unwrap();
-        assert!(
-            svg.starts_with("<svg ") && svg.ends_with("</svg>\n"),
-            "{kind}"
-        );
+        let is_whole = svg.starts_with("<svg ") && svg.ends_with("</svg>\n");
+        assert!(is_whole, "{kind}");
         assert!(svg.contains(r#"width="640""#), "{kind}");
         let height = format!(r#"height="{}""#, picture.height());
         assert!(svg.contains(&height), "{kind}: as high as the PNG");
@@ -66,12 +64,8 @@ fn the_same_question_gives_the_same_picture() {
     let options = "scan --bag r.mcap --width 400";
     let first = plot(drive.path(), options, "one.png");
     assert_eq!(first, plot(drive.path(), options, "two.png"));
-    let other = plot(
-        drive.path(),
-        "scan --bag r.mcap --width 400 --scan 2",
-        "p.png",
-    );
-    assert_ne!(first, other);
+    let second = format!("{options} --scan 2");
+    assert_ne!(first, plot(drive.path(), &second, "p.png"));
 }
 
 #[test]
@@ -86,7 +80,7 @@ fn a_map_needs_no_recording() {
     let image = folder.path().join("room.png");
     let before = fs::read(&image).unwrap();
     let options = "plot map --map room.yaml --out ./room.png";
-    assert_ends(run(folder.path(), options), 2, "is the map itself");
+    assert_refused(folder.path(), options, 2, "is the map itself");
     assert_eq!(fs::read(&image).unwrap(), before);
 }
 
@@ -97,45 +91,36 @@ fn a_scan_in_which_nothing_returned_is_drawn_without_a_robot() {
     let folder = folder(&[map_message(), ("/scan", Message::Scan(silent))]);
     let picture = decoded(&plot(folder.path(), "--bag r.mcap --width 600", "p.png"));
     assert!(picture.pixels().all(|pixel| *pixel != BEST));
-    let (code, stdout, stderr) = run(folder.path(), "plot field --bag r.mcap --force --out p.png");
-    assert_eq!((code, stdout.as_str()), (1, ""));
-    let expected = "r.mcap: scan 1 has no place on this map: no usable beams";
-    assert!(stderr.contains(expected), "{stderr}");
+    let field = "plot field --bag r.mcap --force --out p.png";
+    let no_place = "r.mcap: scan 1 has no place on this map: no usable beams";
+    assert_refused(folder.path(), field, 1, no_place);
 }
 
 #[test]
 fn a_refused_scan_leaves_no_picture() {
     let mut empty = scan(1, HERE);
     empty.ranges.clear();
-    let messages = [
-        map_message(),
-        ("/scan", Message::Scan(empty)),
-        scan_at(2, HERE),
-    ];
-    let folder = folder(&messages);
-    let (code, stdout, stderr) = run(folder.path(), "plot --bag r.mcap --out q.png");
-    assert_eq!((code, stdout.as_str()), (1, ""));
-    assert_eq!(stderr, "backcast: the scan is empty: it has no ranges\n");
+    let empty = ("/scan", Message::Scan(empty));
+    let folder = folder(&[map_message(), empty, scan_at(2, HERE)]);
+    let is_empty = "backcast: the scan is empty: it has no ranges\n";
+    assert_names(folder.path(), "plot --bag r.mcap --out q.png", is_empty);
     assert!(!folder.path().join("q.png").exists());
 }
 
 #[test]
 fn what_is_missing_or_broken_is_named() {
     let drive = drive();
-    let fails = |folder: &TempDir, options: &str, expected: &str| {
-        let (code, stdout, stderr) = run(folder.path(), &format!("plot {options}"));
-        assert_eq!((code, stdout.as_str()), (1, ""), "{stderr}");
-        assert!(stderr.starts_with("backcast: "), "{stderr}");
-        assert!(stderr.contains(expected), "{stderr}");
-        assert_eq!(stderr.lines().count(), 1, "{stderr}");
-    };
-    let scan_3 = "r.mcap: there is no scan 3; the scans taken are 1 to 2";
-    fails(&drive, "--bag r.mcap --scan 3 --out p.png", scan_3);
-    let no_folder = "cannot write r.mcap/p.png: not a directory";
-    fails(&drive, "--bag r.mcap --out r.mcap/p.png", no_folder);
     let no_truth = folder(&[map_message(), scan_at(1, HERE)]);
-    let expected = "r.mcap has no true poses on /ground_truth";
-    fails(&no_truth, "errors --bag r.mcap --out p.png", expected);
+    let scan_3 = "r.mcap: there is no scan 3; the scans taken are 1 to 2";
+    let no_folder = "cannot write r.mcap/p.png: not a directory";
+    let no_truths = "r.mcap has no true poses on /ground_truth";
+    for (folder, options, expected) in [
+        (&drive, "--bag r.mcap --scan 3 --out p.png", scan_3),
+        (&drive, "--bag r.mcap --out r.mcap/p.png", no_folder),
+        (&no_truth, "errors --bag r.mcap --out p.png", no_truths),
+    ] {
+        assert_names(folder.path(), &format!("plot {options}"), expected);
+    }
 }
 
 #[test]
@@ -162,8 +147,7 @@ fn wrong_use_is_reported_before_anything_is_opened() {
             "[possible values: map, scan",
         ),
     ] {
-        let (code, stdout, stderr) = run(folder.path(), &format!("plot {options}"));
-        assert_eq!((code, stdout.as_str()), (2, ""), "{options}: {stderr}");
-        assert!(stderr.contains(expected), "{options}: {stderr}");
+        let arguments = format!("plot {options}");
+        assert_refused(folder.path(), &arguments, 2, expected);
     }
 }

@@ -6,22 +6,9 @@ use recording::Message;
 use serde_json::Value;
 
 use crate::drawn::{
-    HERE, THERE, folder, framed_map, map_message, mount_message, odometry_at, recordings, run,
-    scan, scan_at, truth_at,
+    HERE, assert_refused, folder, framed_map, map_message, output, parsed, recordings, run, scan,
+    scan_at, sound, truth_at,
 };
-
-fn sound() -> tempfile::TempDir {
-    folder(&[
-        framed_map(),
-        mount_message(),
-        odometry_at(1, HERE),
-        scan_at(1, HERE),
-        truth_at(1, HERE),
-        odometry_at(2, THERE),
-        scan_at(2, THERE),
-        truth_at(2, THERE),
-    ])
-}
 
 fn elsewhere((topic, mut message): (&'static str, Message)) -> (&'static str, Message) {
     if let Message::PoseStamped(pose) = &mut message {
@@ -34,19 +21,17 @@ fn elsewhere((topic, mut message): (&'static str, Message)) -> (&'static str, Me
 fn findings(folder: &std::path::Path, expected_code: i32) -> Vec<(String, String)> {
     let (code, stdout, stderr) = run(folder, "doctor --json r.mcap");
     assert_eq!((code, stderr.as_str()), (expected_code, ""), "{stdout}");
-    let report: Value = serde_json::from_str(&stdout).unwrap();
+    let report = parsed(&stdout).remove(0);
     let findings = report["findings"].as_array().unwrap().iter();
     let text = |value: &Value| value.as_str().unwrap().to_owned();
-    findings
-        .map(|f| (text(&f["severity"]), text(&f["finding"])))
-        .collect()
+    let findings = findings.map(|f| (text(&f["severity"]), text(&f["finding"])));
+    findings.collect()
 }
 
 #[test]
 fn info_lists_what_is_there() {
     let folder = sound();
-    let (code, stdout, _) = run(folder.path(), "info r.mcap");
-    assert_eq!(code, 0);
+    let stdout = output(folder.path(), "info r.mcap");
     for part in [
         "r.mcap: ",
         "8 messages in 1 chunks",
@@ -55,21 +40,16 @@ fn info_lists_what_is_there() {
     ] {
         assert!(stdout.contains(part), "{part}: {stdout}");
     }
-    let (_, stdout, _) = run(folder.path(), "info --json r.mcap");
-    let object: Value = serde_json::from_str(&stdout).unwrap();
-    let taken = [("map", "/map"), ("odometry", "/odom"), ("scans", "/scan")];
-    for (what, topic) in taken {
+    let object = &parsed(&output(folder.path(), "info --json r.mcap"))[0];
+    for (what, topic) in [("map", "/map"), ("odometry", "/odom"), ("scans", "/scan")] {
         assert_eq!(object["taken"][what], topic);
     }
-    let channels = object["channels"].as_array().unwrap();
+    let mut channels = object["channels"].as_array().unwrap().iter();
     let scan = channels
-        .iter()
         .find(|channel| channel["topic"] == "/scan")
         .unwrap();
-    assert_eq!(
-        (scan["messages"].as_u64(), scan["schema"].as_str()),
-        (Some(2), Some("sensor_msgs/msg/LaserScan"))
-    );
+    assert_eq!(scan["messages"], 2);
+    assert_eq!(scan["schema"], "sensor_msgs/msg/LaserScan");
 }
 
 #[test]
@@ -89,10 +69,8 @@ fn a_bad_file_of_several_is_named_and_the_others_follow() {
     let folder = sound();
     fs::write(folder.path().join("bad.mcap"), "").unwrap();
     for (command, end) in [("info", "taken: "), ("doctor", "r.mcap: sound\n")] {
-        let (code, stdout, stderr) = run(
-            folder.path(),
-            &format!("{command} nowhere.mcap bad.mcap r.mcap"),
-        );
+        let arguments = format!("{command} nowhere.mcap bad.mcap r.mcap");
+        let (code, stdout, stderr) = run(folder.path(), &arguments);
         assert_eq!(code, 1, "{stderr}");
         assert!(stdout.contains(end), "{command}: {stdout}");
         let bad = stderr.contains("bad.mcap: the file starts with nothing, as it is empty");
@@ -110,19 +88,14 @@ fn what_is_lost_ends_with_three() {
     assert_eq!(found[0].0, "lost");
     assert!(found[0].1.contains("cut short"), "{found:?}");
     let (code, stdout, _) = run(folder.path(), "info r.mcap");
-    assert_eq!(code, 3);
-    assert!(
-        stdout.contains("damaged: the file is cut short"),
-        "{stdout}"
-    );
+    let is_said = stdout.contains("damaged: the file is cut short");
+    assert!(code == 3 && is_said, "{stdout}");
     let mut flipped = bytes;
     flipped[300] ^= 4;
     fs::write(&path, flipped).unwrap();
     assert_eq!(findings(folder.path(), 3)[0].0, "lost");
     fs::write(&path, "no recording").unwrap();
-    let (code, _, stderr) = run(folder.path(), "doctor r.mcap");
-    assert_eq!(code, 1);
-    assert!(stderr.contains("the file starts with"), "{stderr}");
+    assert_refused(folder.path(), "doctor r.mcap", 1, "the file starts with");
 }
 
 #[test]
@@ -145,10 +118,8 @@ fn what_will_not_work_is_a_problem() {
     let elsewhere = [framed_map(), scan_at(1, HERE), elsewhere(truth_at(1, HERE))];
     problem(&elsewhere, "is in frame \"world\", the map in \"map\"");
     note(&[scan_at(1, HERE)], "no map");
-    note(
-        &[scan_at(1, HERE)],
-        "/tf_static does not say where \"laser\"",
-    );
+    let no_mount = "/tf_static does not say where \"laser\"";
+    note(&[scan_at(1, HERE)], no_mount);
     let back = [scan_at(2, HERE), scan_at(1, HERE)];
     problem(&back, "/scan: stamps go back 1 times");
     let twice = [scan_at(1, HERE), scan_at(1, HERE)];

@@ -9,9 +9,7 @@ use std::fs;
 use serde_json::Value;
 use tests::schemas::assert_follows;
 
-use crate::drawn::{
-    HERE, THERE, folder, framed_map, mount_message, odometry_at, recordings, run, scan_at, truth_at,
-};
+use crate::drawn::{recordings, run, sound};
 
 #[test]
 fn the_schemas_are_those_of_the_types() {
@@ -51,40 +49,24 @@ fn the_schemas_are_those_of_the_types() {
 
 #[test]
 fn what_is_printed_follows_the_schemas() {
-    let folder = folder(&[
-        framed_map(),
-        mount_message(),
-        odometry_at(1, HERE),
-        scan_at(1, HERE),
-        truth_at(1, HERE),
-        odometry_at(2, THERE),
-        scan_at(2, THERE),
-        truth_at(2, THERE),
-    ]);
+    let folder = sound();
+    let evaluate = "evaluate evaluate evaluate_total";
+    let sequence = "evaluate_sequence evaluate_sequence evaluate_sequence_total";
     for (arguments, names) in [
-        ("info --json r.mcap", &["info"][..]),
-        ("doctor --json r.mcap", &["doctor"]),
-        ("locate --json r.mcap", &["locate", "locate"]),
-        ("locate --json --particles 2 r.mcap", &["locate", "locate"]),
-        (
-            "evaluate --json r.mcap ./r.mcap",
-            &["evaluate", "evaluate", "evaluate_total"],
-        ),
-        (
-            "evaluate --sequence --json r.mcap ./r.mcap",
-            &[
-                "evaluate_sequence",
-                "evaluate_sequence",
-                "evaluate_sequence_total",
-            ],
-        ),
+        ("info --json r.mcap", "info"),
+        ("doctor --json r.mcap", "doctor"),
+        ("locate --json r.mcap", "locate locate"),
+        ("locate --json --particles 2 r.mcap", "locate locate"),
+        ("evaluate --json r.mcap ./r.mcap", evaluate),
+        ("evaluate --sequence --json r.mcap ./r.mcap", sequence),
     ] {
         let (_, stdout, stderr) = run(folder.path(), arguments);
-        let lines: Vec<&str> = stdout.lines().collect();
-        assert_eq!(lines.len(), names.len(), "{arguments}: {stdout}{stderr}");
-        for (line, name) in lines.iter().zip(names) {
-            assert_follows(name, line);
-        }
+        let (lines, names) = (stdout.lines(), names.split(' '));
+        let (found, expected) = (lines.clone().count(), names.clone().count());
+        assert_eq!(found, expected, "{arguments}: {stdout}{stderr}");
+        lines
+            .zip(names)
+            .for_each(|(line, name)| assert_follows(name, line));
     }
 }
 

@@ -4,7 +4,7 @@ use recording::Recording;
 use serde_json::Value;
 use tempfile::TempDir;
 
-use crate::drawn::{recordings, run};
+use crate::drawn::{assert_refused, output, recordings, run};
 
 const START_NS: i64 = 1_700_000_000_000_000_000;
 
@@ -14,16 +14,14 @@ const CORRIDOR: &str = "3.5,-10.4 6.5,-10.9 9,-10.9 14.5,-10.3";
 /// Creates a folder with a simulated recording `r.mcap`.
 fn simulated(options: &str) -> TempDir {
     let folder = tempfile::tempdir().unwrap();
-    let (code, stdout, stderr) = simulate(&folder, options);
-    assert_eq!((code, stderr.as_str()), (0, ""), "{stdout}");
+    let stdout = output(folder.path(), &simulate(options));
     assert!(stdout.starts_with("r.mcap: "), "{stdout}");
     folder
 }
 
-fn simulate(folder: &TempDir, options: &str) -> (i32, String, String) {
+fn simulate(options: &str) -> String {
     let map = recordings().join("malaga_corridor/map.yaml");
-    let line = format!("simulate --map {} --out r.mcap {options}", map.display());
-    run(folder.path(), &line)
+    format!("simulate --map {} --out r.mcap {options}", map.display())
 }
 
 fn evaluate(folder: &TempDir, options: &str) -> Value {
@@ -46,10 +44,8 @@ fn each_scan_of_a_laser_is_found_where_it_was_taken() {
     assert_eq!(judged["unique_wrong"], 0.0, "{judged}");
     // Readings end at the edge of a cell, but the fit uses its middle: half a cell of 5 cm along
     // each axis, plus noise. The limit is one cell.
-    assert!(
-        judged["error_m"]["median"].as_f64().unwrap() < 0.05,
-        "{judged}"
-    );
+    let median_m = judged["error_m"]["median"].as_f64().unwrap();
+    assert!(median_m < 0.05, "{judged}");
 }
 
 #[test]
@@ -97,10 +93,7 @@ fn a_lidar_tracks_as_well_as_its_middle_ring() {
         assert_eq!(judged["wrong_scans"], 0, "{judged}");
         judged["rms_m"].as_f64().unwrap()
     };
-    let (ring, band) = (
-        followed("--scan-topic /scan"),
-        followed("--cloud-topic /points"),
-    );
+    let [ring, band] = ["--scan-topic /scan", "--cloud-topic /points"].map(followed);
     assert!(band < 1.1 * ring, "{band} and {ring}");
 }
 
@@ -108,10 +101,9 @@ fn a_lidar_tracks_as_well_as_its_middle_ring() {
 fn the_topics_are_those_of_a_robot() {
     let folder = simulated("--path '4,-10.5 5,-10.6' --rate 2 --sonar --mount 0.1,0,0");
     let recording = Recording::open(folder.path().join("r.mcap")).unwrap();
-    let counts: Vec<_> = recording
-        .channels()
-        .map(|channel| (channel.topic.to_string(), channel.messages))
-        .collect();
+    let counts = recording.channels();
+    let counts = counts.map(|channel| (channel.topic.to_string(), channel.messages));
+    let counts: Vec<_> = counts.collect();
     // 1.005 m at 0.5 m/s, twice per second, and one at the start.
     let expected = [
         ("/map", 1),
@@ -134,10 +126,8 @@ fn the_topics_are_those_of_a_robot() {
 fn what_cannot_be_driven_is_refused_and_nothing_is_written() {
     let folder = tempfile::tempdir().unwrap();
     const WAY: &str = "--path '4,-10.5 5,-10.5'";
-    let refused = |options: &str, expected: i32, message: &str| {
-        let (code, _, stderr) = simulate(&folder, options);
-        assert_eq!(code, expected, "{options}: {stderr}");
-        assert!(stderr.contains(message), "{options}: {stderr}");
+    let refused = |options: &str, code: i32, message: &str| {
+        assert_refused(folder.path(), &simulate(options), code, message);
         assert!(!folder.path().join("r.mcap").exists(), "{options}");
     };
     refused("--path '4,-10.5 400,0'", 1, "corner 2 of the path, 400,0,");
@@ -152,7 +142,7 @@ fn what_cannot_be_driven_is_refused_and_nothing_is_written() {
         (
             "--laser a=0,0,0 --laser a=1,0,0",
             1,
-            "two lasers are called a",
+            "two lasers are called",
         ),
     ] {
         refused(&format!("{WAY} {options}"), code, message);

@@ -7,7 +7,7 @@
 )]
 
 use std::path::Path;
-use std::process::{Command, Output, Stdio};
+use std::process::{Command, Stdio};
 
 use geometry::Pose;
 use map::OccupancyGrid;
@@ -17,6 +17,7 @@ use ros::{LaserScan, OccupancyGridMsg};
 use serde_json::Value;
 use tempfile::TempDir;
 use tests::drawn_room::{FRAME, occupancy, ranges};
+use tests::{assert_ends, said_by};
 
 /// An L-shaped room with a pillar, in which no two poses look alike.
 const ROOM: [&str; 12] = [
@@ -148,22 +149,38 @@ pub(crate) fn backcast(folder: &Path, arguments: &str) -> Command {
 }
 
 pub(crate) fn run(folder: &Path, arguments: &str) -> (i32, String, String) {
-    let Output {
-        status,
-        stdout,
-        stderr,
-    } = backcast(folder, arguments).output().unwrap();
-    let text = |bytes| String::from_utf8(bytes).unwrap();
-    (status.code().unwrap(), text(stdout), text(stderr))
+    said_by(&mut backcast(folder, arguments))
 }
 
-/// Asserts the exit code and a part of standard error.
+/// Runs a command that succeeds without a remark; returns its output.
 #[track_caller]
-pub(crate) fn assert_ends((code, _, stderr): (i32, String, String), expected: i32, part: &str) {
-    assert!(
-        code == expected && stderr.contains(part),
-        "{code}: {stderr}"
-    );
+pub(crate) fn output(folder: &Path, arguments: &str) -> String {
+    let (code, stdout, stderr) = run(folder, arguments);
+    assert_eq!((code, stderr.as_str()), (0, ""), "{arguments}: {stdout}");
+    stdout
+}
+
+/// Asserts that a command prints nothing, and its exit code and a part of its error.
+#[track_caller]
+pub(crate) fn assert_refused(folder: &Path, arguments: &str, code: i32, part: &str) {
+    let said = run(folder, arguments);
+    assert_eq!(said.1, "", "{arguments}: {}", said.2);
+    assert_ends(said, code, part);
+}
+
+/// Asserts that a command fails with one line, which has `part`.
+#[track_caller]
+pub(crate) fn assert_names(folder: &Path, arguments: &str, part: &str) {
+    let (code, stdout, stderr) = run(folder, arguments);
+    assert_eq!((code, stdout.as_str()), (1, ""), "{stderr}");
+    let is_named = stderr.starts_with("backcast: ") && stderr.contains(part);
+    assert!(is_named && stderr.lines().count() == 1, "{part}: {stderr}");
+}
+
+/// Returns the objects of an output with one on each line.
+pub(crate) fn parsed(output: &str) -> Vec<Value> {
+    let lines = output.lines().map(serde_json::from_str);
+    lines.map(Result::unwrap).collect()
 }
 
 pub(crate) fn recordings() -> &'static Path {
@@ -176,18 +193,32 @@ pub(crate) fn folder(messages: &[(&str, Message)]) -> TempDir {
     folder
 }
 
+/// Creates a folder with a recording that no tool complains about.
+pub(crate) fn sound() -> TempDir {
+    folder(&[
+        framed_map(),
+        mount_message(),
+        odometry_at(1, HERE),
+        scan_at(1, HERE),
+        truth_at(1, HERE),
+        odometry_at(2, THERE),
+        scan_at(2, THERE),
+        truth_at(2, THERE),
+    ])
+}
+
 /// Locates the scans of `r.mcap`, asserts success, and returns the lines.
 pub(crate) fn lines(folder: &Path, options: &str) -> Vec<String> {
-    let (code, stdout, stderr) = run(folder, &format!("locate --bag r.mcap {options}"));
     // In a pipe there is no progress bar, and no other output is expected.
-    assert_eq!((code, stderr.as_str()), (0, ""), "{stdout}");
+    let stdout = output(folder, &format!("locate --bag r.mcap {options}"));
     stdout.lines().map(ToOwned::to_owned).collect()
 }
 
 pub(crate) fn objects(folder: &Path, options: &str) -> Vec<Value> {
-    let lines = lines(folder, &format!("--json {options}"));
-    let parsed = lines.iter().map(|line| serde_json::from_str(line));
-    parsed.map(Result::unwrap).collect()
+    parsed(&output(
+        folder,
+        &format!("locate --bag r.mcap --json {options}"),
+    ))
 }
 
 pub(crate) fn word(row: &str, column: usize) -> String {
