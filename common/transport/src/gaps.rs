@@ -7,10 +7,6 @@ pub struct GapCounter {
 }
 
 impl GapCounter {
-    pub fn new() -> Self {
-        Self::default()
-    }
-
     /// Returns the samples lost just before `counter`: 0 for the first one and after a restart.
     pub fn lost_before(&mut self, counter: u64) -> u64 {
         let lost = self.next.map_or(0, |next| counter.saturating_sub(next));
@@ -24,7 +20,7 @@ mod tests {
     use super::*;
 
     fn check(counters: &[u64], expected: &[u64]) {
-        let mut gaps = GapCounter::new();
+        let mut gaps = GapCounter::default();
         let lost: Vec<u64> = counters.iter().map(|&c| gaps.lost_before(c)).collect();
         assert_eq!(lost, expected, "{counters:?}");
     }

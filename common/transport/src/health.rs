@@ -88,9 +88,7 @@ impl Health {
 
     /// Publishes an error at once, cut to [`HealthHeader::ERROR_CAPACITY`] bytes.
     pub fn error(&mut self, error: &str) -> Result<(), TransportError> {
-        let end = error.floor_char_boundary(HealthHeader::ERROR_CAPACITY);
-        self.last_error.clear();
-        self.last_error.push_str(&error[..end]);
+        self.last_error = cut(error).to_owned();
         self.send()
     }
 
@@ -122,11 +120,7 @@ impl Health {
         let mut report = self.report;
         report.dropped += losses;
         if losses > self.losses_reported {
-            self.last_error = self.losses.reason();
-            let end = self
-                .last_error
-                .floor_char_boundary(HealthHeader::ERROR_CAPACITY);
-            self.last_error.truncate(end);
+            self.last_error = cut(&self.losses.reason()).to_owned();
             report.state = NodeState::Degraded as u32;
         }
         let mut loan = match self.publisher.loan(self.last_error.len()) {
@@ -139,6 +133,11 @@ impl Health {
         self.losses_reported = losses;
         Ok(())
     }
+}
+
+/// Returns the part of an error that a report has room for.
+fn cut(error: &str) -> &str {
+    &error[..error.floor_char_boundary(HealthHeader::ERROR_CAPACITY)]
 }
 
 impl Drop for Health {

@@ -103,10 +103,8 @@ impl Membership {
 
 /// Returns the path of the socket on which the launcher of `graph` receives control requests.
 pub fn control_socket(graph: &GraphName) -> PathBuf {
-    let membership = Membership::of(graph);
-    membership
-        .root
-        .join(format!("{}{CONTROL}", membership.prefix))
+    let Membership { root, prefix, .. } = Membership::of(graph);
+    root.join(format!("{prefix}{CONTROL}"))
 }
 
 /// True if a launcher is running `graph`.
@@ -166,10 +164,8 @@ mod tests {
         assert_eq!(graph_of_file(&path, 1000, "alive"), Some(robot));
         assert_eq!(graph_of_file(&path, 1000, "launcher"), None);
         assert_eq!(graph_of_file(&path, 100, "alive"), None, "another user's");
-        assert_eq!(
-            graph_of_file(Path::new("/dev/shm/bc1000_"), 1000, "alive"),
-            None
-        );
+        let nameless = Path::new("/dev/shm/bc1000_");
+        assert_eq!(graph_of_file(nameless, 1000, "alive"), None);
         let launched = |name: &str| graph_of_file(Path::new(name), 1000, LAUNCHER);
         let robot = GraphName::new("robot_7").unwrap();
         assert_eq!(launched("bc1000_robot_7.launcher"), Some(robot));
@@ -181,9 +177,8 @@ mod tests {
     #[test]
     fn no_prefix_begins_another_one() {
         let name = |text| GraphName::new(text).unwrap();
-        let prefixes: Vec<String> = [(1, "a"), (1, "a_b"), (1, "ab"), (11, "a"), (1, "1_a")]
-            .map(|(user, graph)| prefix(user, &name(graph)))
-            .into();
+        let prefixes = [(1, "a"), (1, "a_b"), (1, "ab"), (11, "a"), (1, "1_a")]
+            .map(|(user, graph)| prefix(user, &name(graph)));
         for (i, one) in prefixes.iter().enumerate() {
             for (j, other) in prefixes.iter().enumerate() {
                 assert!(i == j || !one.starts_with(other), "{one} {other}");

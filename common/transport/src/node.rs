@@ -47,10 +47,8 @@ pub fn main_with_log<E: Error + 'static>(
         Err(error) => return failed(&error),
     };
     // The error is logged before the graph is dropped, so that the graph receives it.
-    match run(&graph) {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(error) => failed(&error),
-    }
+    let ended = run(&graph);
+    ended.map_or_else(|error| failed(&error), |()| ExitCode::SUCCESS)
 }
 
 fn failed(error: &(dyn Error + 'static)) -> ExitCode {
@@ -93,11 +91,11 @@ fn start_logging_by(default: &str) -> Result<(), String> {
 }
 
 fn log_format() -> Result<String, String> {
-    let is_terminal = std::io::stderr().is_terminal();
-    variable(
-        LOG_FORMAT_VARIABLE,
-        if is_terminal { "short" } else { "text" },
-    )
+    let default = match std::io::stderr().is_terminal() {
+        true => "short",
+        false => "text",
+    };
+    variable(LOG_FORMAT_VARIABLE, default)
 }
 
 /// True if the log goes to a terminal, also through the launcher.

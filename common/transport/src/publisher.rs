@@ -45,9 +45,6 @@ struct Inner<T: Topic> {
 }
 
 impl<T: Topic> Publisher<T> {
-    /// Largest number of samples being filled at the same time.
-    pub const MAX_LOANED: usize = service::MAX_LOANED;
-
     /// Creates a publisher whose first segment is for samples of up to `items` items.
     pub(crate) fn create(
         node: &Node<ipc::Service>,
@@ -61,7 +58,7 @@ impl<T: Topic> Publisher<T> {
             .publisher_builder()
             .initial_max_slice_len(items)
             .allocation_strategy(AllocationStrategy::PowerOfTwo)
-            .max_loaned_samples(Self::MAX_LOANED)
+            .max_loaned_samples(service::MAX_LOANED)
             .backpressure_strategy(BackpressureStrategy::DiscardData)
             .create()
             .map_err(|error| match error {

@@ -14,7 +14,8 @@ use messages::Topic;
 use crate::TransportError;
 use crate::header::Header;
 
-/// Largest number of samples of one publisher that a subscriber may hold at the same time.
+/// Largest number of samples of one publisher that a subscriber may hold at the same time: the
+/// current map, the one before, the newest received and the next.
 pub(crate) const MAX_BORROWED: usize = 4;
 /// Largest number of samples that one publisher may loan at the same time.
 pub(crate) const MAX_LOANED: usize = 2;

@@ -19,10 +19,6 @@ pub struct Subscriber<T: Topic> {
 }
 
 impl<T: Topic> Subscriber<T> {
-    /// Largest number of samples of one publisher held at the same time: the current map, the one
-    /// before, the newest received and the next.
-    pub const MAX_HELD: usize = service::MAX_BORROWED;
-
     pub(crate) fn create(node: &Node<ipc::Service>) -> Result<Self, TransportError> {
         space::ensure_free(T::NAME, 0)?;
         let samples = service::open_samples::<T>(node)?;
@@ -44,7 +40,7 @@ impl<T: Topic> Subscriber<T> {
         })
     }
 
-    /// Receives the oldest sample of a publisher; fails if [`Subscriber::MAX_HELD`] are held.
+    /// Receives the oldest sample of a publisher; fails if as many as allowed are held.
     pub fn receive(&self) -> Result<Option<Sample<T>>, TransportError> {
         let received = self.port.receive();
         let sample = received.map_err(|error| service::failed::<T>("receive on", &error))?;

@@ -24,7 +24,7 @@ fn a_slow_subscriber_keeps_the_newest_and_can_count_the_rest() {
             loan.send().unwrap();
         }
     };
-    let mut gaps = GapCounter::new();
+    let mut gaps = GapCounter::default();
     let mut lost = 0;
     let mut receive = || {
         let mut counters = Vec::new();

@@ -30,7 +30,7 @@ pub fn run(graph: &Graph, config: &Config) -> Result<(), PeakError> {
         maps: Maps::default(),
         scans: Scans::default(),
         workspace: Workspace::default(),
-        gaps: GapCounter::new(),
+        gaps: GapCounter::default(),
         newest_kept: None,
         last_refusal: String::new(),
         hypotheses: graph.publisher_for(config.peaks.max_hypotheses as usize)?,

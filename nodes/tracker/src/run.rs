@@ -62,7 +62,7 @@ pub fn run(graph: &Graph, config: &Config) -> Result<(), TrackerError> {
         initial: config.initial_pose.map(Initial::of_option),
         last: None,
         candidates: Vec::new(),
-        gaps: GapCounter::new(),
+        gaps: GapCounter::default(),
         last_refusal: String::new(),
         last_state: None,
         memory,

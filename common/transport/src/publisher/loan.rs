@@ -75,9 +75,8 @@ impl<'p, T: Topic> Loan<'p, T> {
         let address = self.address();
         match self.place {
             Place::Shared(sample) => {
-                sample
-                    .send()
-                    .map_err(|error| service::failed::<T>("send on", &error))?;
+                let sent = sample.send();
+                sent.map_err(|error| service::failed::<T>("send on", &error))?;
                 self.publisher.sent(address)
             }
             Place::Private { full, .. } => {
