@@ -1,8 +1,6 @@
 //! Core of the node: turns a message of `votes` into one of `hypotheses`.
 
 mod beams;
-#[cfg(test)]
-mod testing;
 mod together;
 
 use bytemuck::Zeroable;
@@ -204,21 +202,17 @@ fn described(votes: &VotesHeader, places: &Places, mount_known: bool) -> Hypothe
 mod tests {
     use std::f64::consts::FRAC_PI_2;
 
-    use messages::{MapHeader, Pose2, ScanHeader, Stamp};
+    use messages::{MapHeader, ScanHeader};
 
-    use super::testing::{cells, room, scans};
     use super::*;
+    use crate::testing::{cells, room, scans, vote, votes_header};
 
     /// Returns a map with these cells, rotated by 90°: grid x is map y, grid y is -x.
     fn maps(cells: &[u8]) -> Maps {
         let mut maps = Maps::default();
         let map = MapHeader {
             map_id: 7,
-            map_from_grid: Pose2 {
-                x: 0.0,
-                y: 0.0,
-                yaw: FRAC_PI_2,
-            },
+            map_from_grid: Pose::new(0.0, 0.0, FRAC_PI_2).into(),
             ..room()
         };
         maps.receive(&map, cells).unwrap();
@@ -227,51 +221,23 @@ mod tests {
 
     fn header() -> VotesHeader {
         VotesHeader {
-            stamp: Stamp {
-                measured_ns: 1,
-                entered_ns: 2,
-                counter: 3,
-            },
-            map_id: 7,
             engine_ns: 1234,
-            outcome: SearchOutcome::Found as u32,
-            headings: 360,
             certified_floor: 60,
-            best: 100,
-            highest_possible: 125,
-            base_from_laser: Pose2 {
-                x: 0.75,
-                y: 0.0,
-                yaw: 0.0,
-            },
+            base_from_laser: Pose::new(0.75, 0.0, 0.0).into(),
             mount_known: 1,
-            max_beams: 180,
-            pooling: 1,
-            beam_arc_m: 0.2,
             searched: 9,
-            ..Zeroable::zeroed()
+            ..votes_header()
         }
     }
 
     /// Two places, one ahead of the other by a third.
-    const VOTES: [Vote; 2] = [
-        Vote {
-            x: 10,
-            y: 5,
-            heading: 0,
-            intensity: 100,
-        },
-        Vote {
-            x: 20,
-            y: 5,
-            heading: 90,
-            intensity: 75,
-        },
-    ];
+    fn votes() -> [Vote; 2] {
+        [vote(10, 5, 0, 100), vote(20, 5, 90, 75)]
+    }
 
     fn extract<'w>(header: &VotesHeader, workspace: &'w mut Workspace) -> Answer<'w> {
         let known = (&maps(&cells()), &scans(header.stamp));
-        answer(header, &VOTES, known, &PeakConfig::default(), workspace).unwrap()
+        answer(header, &votes(), known, &PeakConfig::default(), workspace).unwrap()
     }
 
     #[test]
@@ -296,7 +262,7 @@ mod tests {
         let config = PeakConfig::default();
         let mut workspace = Workspace::default();
         let known = (&maps(&[0; 30 * 20]), &scans);
-        let unknown = answer(&header(), &VOTES, known, &config, &mut workspace);
+        let unknown = answer(&header(), &votes(), known, &config, &mut workspace);
         assert!(matches!(unknown, Err(PeakError::UnknownScan)));
         let scan = ScanHeader {
             stamp: header().stamp,
@@ -306,7 +272,7 @@ mod tests {
         };
         scans.receive(&scan, &[1.0, 2.0]);
         let known = (&maps(&[0; 30 * 20]), &scans);
-        let said = answer(&header(), &VOTES, known, &config, &mut workspace).unwrap();
+        let said = answer(&header(), &votes(), known, &config, &mut workspace).unwrap();
         // The map is empty, so nothing fits.
         assert_eq!(said.header.verdict, Verdict::PoorFit as u32);
         let hypotheses: Vec<Hypothesis> = said.hypotheses().collect();

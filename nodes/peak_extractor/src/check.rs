@@ -184,31 +184,20 @@ fn check_order(votes: &[Vote]) -> Result<(), PeakError> {
 
 #[cfg(test)]
 mod tests {
-    use bytemuck::Zeroable;
-    use messages::{MapHeader, Pose2};
+    use messages::MapHeader;
 
     use super::*;
+    use crate::testing::{room, vote, votes_header};
 
     fn maps() -> Maps {
         let mut maps = Maps::default();
         let map = MapHeader {
             map_id: 7,
-            width: 30,
-            height: 20,
             resolution_m: 0.1,
-            ..MapHeader::default()
+            ..room()
         };
         maps.receive(&map, &[0; 30 * 20]).unwrap();
         maps
-    }
-
-    fn vote(x: u16, y: u16, heading: u16, intensity: u16) -> Vote {
-        Vote {
-            x,
-            y,
-            heading,
-            intensity,
-        }
     }
 
     fn votes() -> Vec<Vote> {
@@ -223,17 +212,10 @@ mod tests {
 
     fn header() -> VotesHeader {
         VotesHeader {
-            map_id: 7,
-            outcome: SearchOutcome::Found as u32,
-            headings: 360,
             certified_floor: 85,
-            best: 100,
             highest_possible: 200,
             known_heading: 0.5,
-            max_beams: 180,
-            pooling: 1,
-            beam_arc_m: 0.2,
-            ..Zeroable::zeroed()
+            ..votes_header()
         }
     }
 
@@ -301,11 +283,7 @@ mod tests {
     #[test]
     fn a_mount_is_given_where_it_is_known_and_finite() {
         let mounted = |mount_known, yaw| {
-            let base_from_laser = Pose2 {
-                x: 0.5,
-                y: 0.0,
-                yaw,
-            };
+            let base_from_laser = Pose::new(0.5, 0.0, yaw).into();
             mount(&VotesHeader {
                 mount_known,
                 base_from_laser,

@@ -11,6 +11,8 @@ pub mod maps;
 pub mod particles;
 mod run;
 pub mod scans;
+#[cfg(test)]
+mod testing;
 
 pub use config::Config;
 pub use error::PeakError;

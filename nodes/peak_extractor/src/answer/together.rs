@@ -72,18 +72,11 @@ pub(super) fn on_several<'w>(
 
 #[cfg(test)]
 mod tests {
-    use bytemuck::Zeroable;
-    use messages::{Hypothesis, MapHeader, MapSet, SearchOutcome, Stamp, Verdict};
+    use messages::{Hypothesis, MapHeader, MapSet, SearchOutcome, Verdict};
 
     use super::super::answer;
-    use super::super::testing::{cells, room, scans};
     use super::*;
-
-    const STAMP: Stamp = Stamp {
-        measured_ns: 1,
-        entered_ns: 2,
-        counter: 3,
-    };
+    use crate::testing::{cells, room, scans, votes_header};
 
     /// Returns two maps of a set, 7 and 8, which look alike.
     fn maps() -> Maps {
@@ -99,12 +92,7 @@ mod tests {
     }
 
     fn vote(x: u16, intensity: u16) -> Vote {
-        Vote {
-            x,
-            y: 5,
-            heading: 0,
-            intensity,
-        }
+        crate::testing::vote(x, 5, 0, intensity)
     }
 
     /// Returns the header for this many votes on a map, the best of which has intensity `best`.
@@ -114,18 +102,12 @@ mod tests {
             _ => SearchOutcome::Found,
         };
         VotesHeader {
-            stamp: STAMP,
             map_id,
             total,
             outcome: outcome as u32,
-            headings: 360,
             certified_floor: best / 2,
             best,
-            highest_possible: 125,
-            max_beams: 180,
-            pooling: 1,
-            beam_arc_m: 0.2,
-            ..Zeroable::zeroed()
+            ..votes_header()
         }
     }
 
@@ -134,8 +116,9 @@ mod tests {
         parts: &[VotesHeader],
         votes: &[Vote],
     ) -> Result<(Verdict, Vec<Hypothesis>), PeakError> {
-        let mut scans = scans(STAMP);
-        scans.take_by_map(STAMP, parts);
+        let stamp = votes_header().stamp;
+        let mut scans = scans(stamp);
+        scans.take_by_map(stamp, parts);
         said_after(&scans, parts, votes)
     }
 
@@ -194,11 +177,11 @@ mod tests {
             &votes,
             "2 maps have 18446744073709551615 votes",
         );
-        let mut scans = Scans::default();
-        scans.take_by_map(STAMP, &[on_map(7, 1, 100), on_map(8, 0, 0)]);
+        let (stamp, mut scans) = (votes_header().stamp, Scans::default());
+        scans.take_by_map(stamp, &[on_map(7, 1, 100), on_map(8, 0, 0)]);
         let fewer = said_after(&scans, &parts, &votes);
         assert!(matches!(fewer, Err(PeakError::Parts { maps: 2, .. })));
-        scans.take_by_map(STAMP, &[]);
+        scans.take_by_map(stamp, &[]);
         let none = said_after(&scans, &parts, &[]);
         assert!(matches!(none, Err(PeakError::Parts { maps: 0, .. })));
     }

@@ -1,7 +1,7 @@
-//! A drawn room and a scan in it, for tests.
+//! A drawn room, a scan in it, and votes on it, for tests.
 
 use bytemuck::Zeroable;
-use messages::{MapHeader, ScanHeader, Stamp};
+use messages::{MapHeader, ScanHeader, SearchOutcome, Stamp, Vote, VotesHeader};
 
 use crate::scans::Scans;
 
@@ -29,7 +29,7 @@ const ROOM: [&str; 20] = [
     "##############################",
 ];
 
-pub(super) fn room() -> MapHeader {
+pub(crate) fn room() -> MapHeader {
     MapHeader {
         width: 30,
         height: 20,
@@ -38,13 +38,43 @@ pub(super) fn room() -> MapHeader {
     }
 }
 
-pub(super) fn cells() -> Vec<u8> {
+pub(crate) fn cells() -> Vec<u8> {
     let cells = ROOM.iter().rev().flat_map(|row| row.bytes());
     cells.map(|cell| 100 * u8::from(cell == b'#')).collect()
 }
 
+pub(crate) fn vote(x: u16, y: u16, heading: u16, intensity: u16) -> Vote {
+    Vote {
+        x,
+        y,
+        heading,
+        intensity,
+    }
+}
+
+/// Returns the header of votes on map 7, the best of which has intensity 100.
+pub(crate) fn votes_header() -> VotesHeader {
+    VotesHeader {
+        stamp: Stamp {
+            measured_ns: 1,
+            entered_ns: 2,
+            counter: 3,
+        },
+        map_id: 7,
+        outcome: SearchOutcome::Found as u32,
+        headings: 360,
+        certified_floor: 50,
+        best: 100,
+        highest_possible: 125,
+        max_beams: 180,
+        pooling: 1,
+        beam_arc_m: 0.2,
+        ..Zeroable::zeroed()
+    }
+}
+
 /// Scan from the middle of cell (10, 5) at heading 0 of the grid, with a beam per degree.
-pub(super) fn scans(stamp: Stamp) -> Scans {
+pub(crate) fn scans(stamp: Stamp) -> Scans {
     let cells = cells();
     let is_free = |x: f64, y: f64| cells[30 * y as usize + x as usize] == 0;
     let range = |degrees: u32| {
