@@ -45,35 +45,26 @@ struct Options {
     drive: DriveConfig,
 }
 
-#[derive(Debug, Clone, Copy)]
-enum Reading {
-    /// Each echo on the axis of its transducer: the paper without σ_θ.
-    Axes,
-    /// Each echo spread over its cone: σ_θ.
-    Cones,
-    Regions,
-}
+/// Makes the ranges of a scan from echoes of cones of this half width, radians.
+type Reading = fn(&[Echo], f64) -> Vec<f32>;
 
 const READINGS: [(&str, Reading); 3] = [
-    ("axes", Reading::Axes),
-    ("cones", Reading::Cones),
-    ("regions", Reading::Regions),
+    ("axes", on_axes),
+    ("cones", regions::spread),
+    ("regions", at_regions),
 ];
 
-impl Reading {
-    fn ranges(self, echoes: &[Echo], half_width: f64) -> Vec<f32> {
-        match self {
-            Reading::Axes => regions::spread(echoes, 0.0),
-            Reading::Cones => regions::spread(echoes, half_width),
-            Reading::Regions => {
-                let config = RegionConfig {
-                    half_width,
-                    ..RegionConfig::default()
-                };
-                regions::at_regions(echoes, &regions::regions(echoes, &config))
-            }
-        }
-    }
+/// Each echo on the axis of its transducer: the paper without σ_θ.
+fn on_axes(echoes: &[Echo], _: f64) -> Vec<f32> {
+    regions::spread(echoes, 0.0)
+}
+
+fn at_regions(echoes: &[Echo], half_width: f64) -> Vec<f32> {
+    let config = RegionConfig {
+        half_width,
+        ..RegionConfig::default()
+    };
+    regions::at_regions(echoes, &regions::regions(echoes, &config))
 }
 
 struct Taken {
@@ -208,7 +199,7 @@ fn tally(
         let first = drive[..i].partition_point(|taken| taken.way_m < last.way_m - way_m);
         let first = if way_m > 0.0 { first } else { i };
         let echoes = ring.echoes(&drive[first..=i])?;
-        let ranges = reading.ranges(&echoes, ring.half_width);
+        let ranges = reading(&echoes, ring.half_width);
         let scan = regions::scan_of(&ranges);
         let outcome = vote_search.search_in(&mut workspace, &scan, &|| false)?;
         let outcome = outcome.expect("a search that nothing stops ends with an outcome");

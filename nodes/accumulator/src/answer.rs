@@ -2,9 +2,9 @@
 
 use bytemuck::Zeroable;
 use engine::EngineError;
-use engine::beams::BeamConfig;
 use engine::observation::Observation;
 use engine::vote_search::{Outcome, VoteSearch, Workspace};
+use engine::votes::VoteSet;
 use messages::{FieldHeader, FieldKind, ScanHeader, SearchOutcome, Vote, VotesHeader};
 
 use crate::preparation::PreparedMap;
@@ -42,13 +42,32 @@ pub fn answered<'w>(
     outcome: &'w Outcome,
     engine_ns: u64,
 ) -> Answer<'w> {
-    let terms = Terms {
-        map_id: map.map_id,
-        beams: map.vote_search.config().votes.beams,
-        pooling: map.vote_search.pooling() as u32,
+    let found = &outcome.found;
+    let beams = &map.vote_search.config().votes.beams;
+    let code = match found.best > 0 {
+        true => SearchOutcome::Found,
+        false => SearchOutcome::NoVotes,
     };
-    let votes = votes_header(scan, &terms, outcome, engine_ns);
-    (votes, &outcome.found.votes)
+    let votes = VotesHeader {
+        total: found.votes.len() as u64,
+        engine_ns,
+        poses_evaluated: found.poses_evaluated,
+        floor: found.floor.into(),
+        certified_floor: found.certified_floor.into(),
+        best: found.best.into(),
+        highest_possible: outcome.highest_possible,
+        truncated: truncated(found),
+        beams_used: outcome.beams_used,
+        beams_silent: outcome.beams_silent,
+        heading_known: outcome.known_heading.is_some().into(),
+        known_heading: outcome.known_heading.unwrap_or(0.0),
+        bearing_rounding: outcome.bearing_rounding,
+        max_beams: beams.max_beams,
+        pooling: map.vote_search.pooling() as u32,
+        beam_arc_m: beams.beam_arc_m,
+        ..unsearched(scan, code, map.map_id, outcome.headings)
+    };
+    (votes, &found.votes)
 }
 
 /// Returns the image of the last search: all intensities, or the bounds of blocks.
@@ -92,45 +111,11 @@ pub fn image<'w>(
     Ok((header, &blocks.bounds))
 }
 
-struct Terms {
-    map_id: u64,
-    beams: BeamConfig,
-    pooling: u32,
-}
-
-fn votes_header(
-    scan: &ScanHeader,
-    terms: &Terms,
-    outcome: &Outcome,
-    engine_ns: u64,
-) -> VotesHeader {
-    let (found, beams) = (&outcome.found, &terms.beams);
-    let code = if found.best > 0 {
-        SearchOutcome::Found
-    } else {
-        SearchOutcome::NoVotes
-    };
-    VotesHeader {
-        total: found.votes.len() as u64,
-        engine_ns,
-        poses_evaluated: found.poses_evaluated,
-        floor: found.floor.into(),
-        certified_floor: found.certified_floor.into(),
-        best: found.best.into(),
-        highest_possible: outcome.highest_possible,
-        truncated: match found.cut {
-            true => VotesHeader::CUT,
-            false => found.truncated.into(),
-        },
-        beams_used: outcome.beams_used,
-        beams_silent: outcome.beams_silent,
-        heading_known: outcome.known_heading.is_some().into(),
-        known_heading: outcome.known_heading.unwrap_or(0.0),
-        bearing_rounding: outcome.bearing_rounding,
-        max_beams: beams.max_beams,
-        pooling: terms.pooling,
-        beam_arc_m: beams.beam_arc_m,
-        ..unsearched(scan, code, terms.map_id, outcome.headings)
+/// Says whether votes were left out, and whether the search was cut.
+fn truncated(found: &VoteSet) -> u32 {
+    match found.cut {
+        true => VotesHeader::CUT,
+        false => found.truncated.into(),
     }
 }
 
@@ -154,29 +139,17 @@ pub fn unsearched(
 
 #[cfg(test)]
 mod tests {
-    use engine::votes::VoteSet;
-
     use super::*;
 
     #[test]
     fn a_search_that_was_cut_says_so() {
-        let terms = Terms {
-            map_id: 77,
-            beams: BeamConfig::default(),
-            pooling: 2,
-        };
-        let truncated = |cut| {
-            let found = VoteSet {
+        let said = |cut| {
+            truncated(&VoteSet {
                 truncated: true,
                 cut,
                 ..VoteSet::default()
-            };
-            let outcome = Outcome {
-                found,
-                ..Outcome::default()
-            };
-            votes_header(&ScanHeader::zeroed(), &terms, &outcome, 1234).truncated
+            })
         };
-        assert_eq!((truncated(false), truncated(true)), (1, VotesHeader::CUT));
+        assert_eq!((said(false), said(true)), (1, VotesHeader::CUT));
     }
 }

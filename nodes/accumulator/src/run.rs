@@ -2,7 +2,6 @@
 
 mod inputs;
 mod outputs;
-mod set;
 mod supply;
 
 use std::collections::BTreeMap;

@@ -6,14 +6,14 @@ use std::thread::{self, JoinHandle};
 use std::time::Instant;
 
 use engine::limits::Region;
+use engine::space;
 use engine::vote_search::{Prior, VoteSearchConfig};
 use index_cache::{CachePlace, IndexCache, Kept};
-use messages::{Corner, NodeState, topic};
+use messages::{Corner, InvalidMapSet, MapSet, MapsHeader, NodeState, topic};
 use transport::{Health, Sample, Subscriber, TransportError, with_causes};
 
 use super::inputs::Inputs;
-use super::set::Set;
-use crate::preparation::{Job, Key, PreparedMap};
+use crate::preparation::{Job, Key, PreparedMap, Received};
 use crate::subject::{Refused, Subject};
 use crate::{AccumulatorError, Config};
 
@@ -26,7 +26,7 @@ pub(super) struct Supply {
     map: Option<Sample<topic::Map>>,
     boundary: Option<Sample<topic::Boundary>>,
     /// Set of maps, which takes precedence; `map` is then the one of its maps that is displayed.
-    set: Option<Set>,
+    set: Option<Sample<topic::Maps>>,
     wanted: Option<Order>,
     under_way: Option<UnderWay>,
     /// Order of the maps returned last.
@@ -91,8 +91,9 @@ impl Supply {
         let came = came.into_iter().map(u64::from).sum();
         health.count_received(came);
         if let Some(set) = set {
-            match Set::read(set) {
-                Ok(set) => self.set = Some(set),
+            let keys = maps_of(&set, MapSet::read).and_then(|maps| keys_of(&maps));
+            match keys {
+                Ok(_) => self.set = Some(set),
                 Err(refused) => refuse(&refused, health)?,
             }
         }
@@ -137,8 +138,9 @@ impl Supply {
     /// Determines what to prepare; newer inputs replace an older order.
     fn consider(&mut self, health: &mut Health) -> Result<(), TransportError> {
         self.wanted = None;
-        match self.keys() {
+        match self.received().and_then(|maps| keys_of(&maps)) {
             Ok(keys) => {
+                let keys = keys.filter(|keys| !keys.is_empty());
                 let region = self.config.limits.region.clone();
                 self.wanted = keys.map(|keys| Order { keys, region });
             }
@@ -147,30 +149,28 @@ impl Supply {
         Ok(())
     }
 
-    fn keys(&self) -> Result<Option<Vec<Key>>, Refused> {
+    /// Returns the maps to search: those of the set, or else the map and its boundary once both
+    /// have come.
+    fn received(&self) -> Result<Vec<Received<'_>>, Refused> {
         if let Some(set) = &self.set {
-            return Ok(Some(set.keys.clone()));
+            return maps_of(set, MapSet::split);
         }
-        let (Some(map), Some(boundary)) = (&self.map, &self.boundary) else {
-            return Ok(None);
-        };
-        let key = Key::of(map.header(), (boundary.header(), boundary.items()));
-        let key = key.map_err(|error| Subject::map(map.header()).refused(error))?;
-        Ok(key.map(|key| vec![key]))
+        let both = self.map.iter().zip(&self.boundary);
+        let received = both.map(|(map, boundary)| Received {
+            map: *map.header(),
+            occupancy: map.items(),
+            boundary: Some((boundary.header(), boundary.items())),
+        });
+        Ok(received.collect())
     }
 
     fn jobs(&self) -> Result<Vec<Job>, Refused> {
-        if let Some(set) = &self.set {
-            return set.jobs();
-        }
-        let (Some(map), Some(boundary)) = (&self.map, &self.boundary) else {
-            return Ok(Vec::new());
+        let maps = self.received()?;
+        let reach_m = match self.set {
+            Some(_) => space::reach_m(maps.iter().map(|received| &received.map)),
+            None => 0.0,
         };
-        let (boundary, cells) = (boundary.header(), boundary.items());
-        let job = Job::new(map.header(), map.items(), boundary, cells);
-        Ok(vec![job.map_err(|error| {
-            Subject::map(map.header()).refused(error)
-        })?])
+        maps.iter().map(|received| received.job(reach_m)).collect()
     }
 
     fn finish(
@@ -270,6 +270,28 @@ impl Supply {
         });
         Ok(())
     }
+}
+
+/// Returns the maps of a set, which `read` takes apart.
+fn maps_of<'s>(
+    set: &'s Sample<topic::Maps>,
+    read: fn(&MapsHeader, &'s [u8]) -> Result<MapSet<'s>, InvalidMapSet>,
+) -> Result<Vec<Received<'s>>, Refused> {
+    let header = set.header();
+    let set = read(header, set.items());
+    let set = set.map_err(|error| Subject::Set(header.set_id).refused(error))?;
+    let received = set.maps.into_iter().map(|(map, occupancy)| Received {
+        map,
+        occupancy,
+        boundary: None,
+    });
+    Ok(received.collect())
+}
+
+/// Returns the keys of the maps; `None` if a boundary belongs to another map.
+fn keys_of(maps: &[Received<'_>]) -> Result<Option<Vec<Key>>, Refused> {
+    let keys: Vec<Option<Key>> = maps.iter().map(Received::key).collect::<Result<_, _>>()?;
+    Ok(keys.into_iter().collect())
 }
 
 /// Returns the region with these corners; `None` (everywhere) for no corners.

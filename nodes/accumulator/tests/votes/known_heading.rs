@@ -5,7 +5,7 @@ use std::f64::consts::FRAC_PI_2;
 use bytemuck::Zeroable;
 use engine::vote_search::Prior;
 use messages::{FieldHeader, FieldKind, FrameName, Odometry, Pose2, SearchOutcome, Stamp, topic};
-use transport::testing::{Isolated, wait_for_health, wait_for_next};
+use transport::testing::{Isolated, wait_for_next};
 
 use tests::drawn_room::{FRAME, MOUNT, ROOM, ranges, scan};
 
@@ -70,11 +70,7 @@ fn a_fixed_heading_gives_the_votes_and_the_image_of_the_engine() {
     let (header, intensities) = wait_for_next(&world.graph, &fields);
     assert_eq!((header, intensities), (expected, image));
 
-    // The next image is due in ten seconds and would be sent before the answer.
-    for _ in 0..3 {
-        world.ask(&ranges);
-    }
-    assert!(fields.receive().unwrap().is_none());
+    world.assert_no_image_yet(&fields, &ranges);
     node.stop();
 }
 
@@ -89,11 +85,9 @@ fn headings_come_from_odometry_of_the_base() {
 
     let (votes, _) = world.ask(&ranges);
     assert_eq!(votes.outcome, SearchOutcome::Refused as u32);
-    let (_, error) = wait_for_health(&world.graph, &world.health, |report| report.refused == 1);
-    assert!(
-        error.contains("scan 0 rejected: the scan needs odometry"),
-        "{error}"
-    );
+    let error = world.wait_for_refused(1);
+    let expected = "scan 0 rejected: the scan needs odometry";
+    assert!(error.contains(expected), "{error}");
 
     let report = |measured_ns, yaw| {
         let header = Odometry {
@@ -118,7 +112,7 @@ fn headings_come_from_odometry_of_the_base() {
     world.counter.set(3);
     let (votes, _) = world.ask(&ranges);
     assert_eq!(votes.outcome, SearchOutcome::Refused as u32);
-    let (_, error) = wait_for_health(&world.graph, &world.health, |report| report.refused == 2);
+    let error = world.wait_for_refused(2);
     assert!(error.contains("1900000000 ns before the scan"), "{error}");
     node.stop();
 }

@@ -3,8 +3,8 @@
 use engine::beams::BeamConfig;
 use engine::vote_search::{Outcome, Prior};
 use messages::{
-    BoundaryCell, Corner, FieldHeader, FieldKind, HealthHeader, NodeState, RegionHeader,
-    SearchOutcome, Stamp, Vote, VotesHeader, topic,
+    BoundaryCell, Corner, FieldHeader, FieldKind, NodeState, RegionHeader, SearchOutcome, Stamp,
+    Vote, VotesHeader, topic,
 };
 use transport::Publisher;
 use transport::testing::{Isolated, wait_for_health, wait_for_next};
@@ -115,10 +115,8 @@ fn votes_are_those_of_the_engine() {
 fn the_image_bounds_the_votes_where_the_heading_is_searched() {
     let isolated = Isolated::new("bounds");
     let world = World::new(&isolated);
-    let node = world.start(&["--field-rate", "0.1"]);
+    let node = world.start_on(&HALL, &["--field-rate", "0.1"]);
     let fields = world.graph.subscriber::<topic::Field>().unwrap();
-    world.publish(&HALL);
-    world.wait_until(NodeState::Ready);
     let ranges = ranges(&HALL, 35, 4, 211);
     let (votes, poses) = world.ask(&ranges);
     let (header, bounds) = wait_for_next(&world.graph, &fields);
@@ -143,11 +141,7 @@ fn the_image_bounds_the_votes_where_the_heading_is_searched() {
         assert!(vote.intensity <= bounds[pixel as usize], "{vote:?}");
     }
 
-    // The next image is due in ten seconds and would be sent before the answer.
-    for _ in 0..3 {
-        world.ask(&ranges);
-    }
-    assert!(fields.receive().unwrap().is_none());
+    world.assert_no_image_yet(&fields, &ranges);
     node.stop();
 }
 
@@ -162,7 +156,7 @@ fn bad_scans_are_refused_and_counted_and_the_next_good_one_is_answered() {
     let (votes, poses) = world.ask(&good);
     assert!(is_refused(&votes) && poses.is_empty());
     assert_eq!(votes.map_id, 0);
-    let (_, error) = wait_for_health(&world.graph, &world.health, |report| report.refused == 1);
+    let error = world.wait_for_refused(1);
     assert_eq!(error, "scan 0 rejected: there is no map yet");
 
     world.publish(&ROOM);
@@ -177,11 +171,9 @@ fn bad_scans_are_refused_and_counted_and_the_next_good_one_is_answered() {
         assert!(is_refused(&votes) && poses.is_empty());
         assert_eq!(votes.map_id, id(&ROOM));
     }
-    let (_, error) = wait_for_health(&world.graph, &world.health, |report| report.refused == 5);
-    assert!(
-        error.starts_with("scan 4 rejected: the laser sits at x inf m"),
-        "{error}"
-    );
+    let error = world.wait_for_refused(5);
+    let expected = "scan 4 rejected: the laser sits at x inf m";
+    assert!(error.starts_with(expected), "{error}");
 
     let (votes, poses) = world.ask(&good);
     assert_equals(&votes, &poses, &searched(&ROOM, &good));
@@ -212,10 +204,9 @@ fn ask_until_swapped(world: &World, map_id: u64) {
     let scanned = ranges(&CHANGED, 3, 3, 40);
     loop {
         let (votes, poses) = world.ask(&scanned);
-        let rows = if votes.map_id == id(&ROOM) {
-            &ROOM
-        } else {
-            &CHANGED
+        let rows = match votes.map_id == id(&ROOM) {
+            true => &ROOM,
+            false => &CHANGED,
         };
         assert_equals(&votes, &poses, &searched(rows, &scanned));
         if votes.map_id == map_id {
@@ -236,11 +227,8 @@ fn a_new_map_is_used_once_it_and_its_boundary_are_there() {
 
     world.publish_map(&CHANGED);
     let (votes, _) = world.ask(&ranges(&ROOM, 3, 3, 40));
-    assert_eq!(
-        votes.map_id,
-        id(&ROOM),
-        "the boundary of the new map is missing"
-    );
+    // The boundary of the new map is missing.
+    assert_eq!(votes.map_id, id(&ROOM));
     world.publish_boundary(id(&CHANGED), &CHANGED);
     ask_until_swapped(&world, id(&CHANGED));
     node.stop();
@@ -253,10 +241,8 @@ fn a_map_that_is_refused_leaves_the_one_before_in_use() {
     let node = world.start_on(&ROOM, &[]);
 
     // A wrong id would let data of one map be used for another one.
-    world
-        .maps
-        .send(map_header(&ROOM), &occupancy(&CHANGED))
-        .unwrap();
+    let other_cells = occupancy(&CHANGED);
+    world.maps.send(map_header(&ROOM), &other_cells).unwrap();
     let (report, error) = world.wait_until(NodeState::Degraded);
     assert_eq!(report.refused, 1);
     assert!(error.contains("is not that of its cells"), "{error}");
@@ -267,8 +253,7 @@ fn a_map_that_is_refused_leaves_the_one_before_in_use() {
     loan.header_mut().boundary_cells = 1;
     loan.items_mut()[0] = BoundaryCell { x: 999, y: 0 };
     loan.send().unwrap();
-    let degraded = |report: &HealthHeader| report.refused == 2;
-    let (_, error) = wait_for_health(&world.graph, &world.health, degraded);
+    let error = world.wait_for_refused(2);
     let expected = format!(
         "map {:016x} rejected: cell 999, 0 of the boundary is not an occupied cell of the map",
         id(&CHANGED)
@@ -315,9 +300,7 @@ fn a_requested_region_holds_until_it_is_taken_back() {
     let isolated = Isolated::new("region");
     let world = World::new(&isolated);
     let regions = world.graph.publisher::<topic::Region>().unwrap();
-    world.publish(&ROOM);
-    let node = world.start(&[]);
-    world.wait_until(NodeState::Ready);
+    let node = world.start_on(&ROOM, &[]);
     let ranges = ranges(&ROOM, 12, 6, 211);
     let found = || world.ask(&ranges).1[0].x;
     assert_eq!(found(), 12);
@@ -326,21 +309,11 @@ fn a_requested_region_holds_until_it_is_taken_back() {
     while found() >= 6 {}
     // An invalid region changes nothing.
     request(&regions, &[(0.0, 0.0), (f64::NAN, 1.0)]);
-    let (_, error) = wait_for_health(&world.graph, &world.health, |report| report.refused == 1);
-    assert!(
-        error.contains("search region rejected: a corner at NaN"),
-        "{error}"
-    );
+    let error = world.wait_for_refused(1);
+    let expected = "search region rejected: a corner at NaN";
+    assert!(error.contains(expected), "{error}");
     assert!(found() < 6);
     request(&regions, &[]);
     while found() != 12 {}
     node.stop();
-}
-
-#[test]
-fn a_command_line_that_contradicts_itself_ends_with_two() {
-    let isolated = Isolated::new("usage");
-    let world = World::new(&isolated);
-    let node = world.start(&["--heading", "1", "--heading-offset", "2"]);
-    assert_eq!(node.exit_code(), Some(2));
 }

@@ -120,10 +120,8 @@ fn a_region_on_one_map_leaves_out_the_others() {
     request(&regions, &[(500.0, 500.0), (510.0, 510.0)]);
     let refused = |report: &HealthHeader| report.refused == 1;
     let (report, error) = wait_for_health(&world.graph, &world.health, refused);
-    assert!(
-        error.starts_with("search region rejected: no open cell of the map"),
-        "{error}"
-    );
+    let expected = "search region rejected: no open cell of the map";
+    assert!(error.starts_with(expected), "{error}");
     assert_eq!(report.state, NodeState::Ready as u32);
     let [ground_floor, first_floor] = BUILDING;
     publish_set(&sets, &[("hut", 0.0, &CHANGED), first_floor], |_| {});
@@ -152,10 +150,8 @@ fn a_set_that_is_refused_leaves_the_one_before_in_use() {
     });
     let (_, error) = world.wait_until(NodeState::Degraded);
     let first = floor_header(BUILDING[1]).map_id;
-    assert!(
-        error.starts_with(&format!("map first ({first:016x}) rejected: occupied_from")),
-        "{error}"
-    );
+    let expected = format!("map first ({first:016x}) rejected: occupied_from");
+    assert!(error.starts_with(&expected), "{error}");
     ask_until(&world, is_of_building);
     request(&regions, &[(0.0, 0.0), (6.0, 0.0), (6.0, 9.0), (0.0, 9.0)]);
     ask_until(&world, |votes, poses| {

@@ -11,7 +11,7 @@ use messages::{
 use tests::drawn_room::{FRAME, MOUNT, grid, map_header, occupancy, scan};
 use transport::{Graph, Publisher, Subscriber, monotonic_ns};
 
-use transport::testing::{Isolated, NodeProcess, wait_for_next, wait_for_state};
+use transport::testing::{Isolated, NodeProcess, wait_for_health, wait_for_next, wait_for_state};
 
 pub(crate) fn id(rows: &[&str]) -> u64 {
     map_header(rows).map_id
@@ -113,6 +113,20 @@ impl World {
         let answer = wait_for_next(&self.graph, &self.votes);
         assert_eq!(answer.0.stamp, header.stamp);
         answer
+    }
+
+    /// Asserts that the next image, due in ten seconds, is not sent: it would be, before the answer.
+    pub(crate) fn assert_no_image_yet(&self, fields: &Subscriber<topic::Field>, ranges: &[f32]) {
+        for _ in 0..3 {
+            self.ask(ranges);
+        }
+        assert!(fields.receive().unwrap().is_none());
+    }
+
+    /// Waits until the node has refused this many messages; returns the last reason.
+    pub(crate) fn wait_for_refused(&self, count: u64) -> String {
+        let is_it = |report: &HealthHeader| report.refused == count;
+        wait_for_health(&self.graph, &self.health, is_it).1
     }
 
     pub(crate) fn wait_until(&self, state: NodeState) -> (HealthHeader, String) {
