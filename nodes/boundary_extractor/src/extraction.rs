@@ -45,7 +45,7 @@ pub fn extract(map: &MapHeader, occupancy: &[u8]) -> Result<Extraction, Boundary
 
 #[cfg(test)]
 mod tests {
-    use messages::{Pose2, Stamp, UNKNOWN};
+    use messages::{Stamp, UNKNOWN};
 
     use super::*;
 
@@ -60,11 +60,6 @@ mod tests {
             width,
             height,
             resolution_m: 0.05,
-            map_from_grid: Pose2 {
-                x: -1.0,
-                y: 2.0,
-                yaw: 0.1,
-            },
             ..MapHeader::default()
         }
     }
@@ -92,12 +87,8 @@ mod tests {
         let expected = [0, 1, 2].map(|y| BoundaryCell { x: 1, y });
         assert_eq!(cells, expected);
         assert_eq!((header.stamp, header.map_id), (map.stamp, 77));
-        let counts = (
-            header.free_cells,
-            header.boundary_cells,
-            header.occupied_cells,
-        );
-        assert_eq!(counts, (3, 3, 6));
+        assert_eq!((header.free_cells, header.boundary_cells), (3, 3));
+        assert_eq!(header.occupied_cells, 6);
     }
 
     #[test]
@@ -108,25 +99,11 @@ mod tests {
         refused(&map(u32::MAX, u32::MAX), &CELLS, "1 to 32767");
         refused(&map(2, 1), &[0, UNKNOWN], "no occupied cell");
         refused(&map(2, 1), &[100, UNKNOWN], "no free cell");
-    }
-
-    #[test]
-    fn a_geometry_out_of_range_is_refused() {
-        for resolution_m in [0.0, -0.05, 1e-300, 11.0, f64::NAN, f64::INFINITY] {
-            let absurd = MapHeader {
-                resolution_m,
-                ..map(4, 3)
-            };
-            refused(&absurd, &CELLS, "allowed: 0.001..=10 m");
-        }
-        for (x, yaw) in [(f64::NAN, 0.0), (1e9, 0.0), (0.0, f64::INFINITY)] {
-            let map_from_grid = Pose2 { x, y: 0.0, yaw };
-            let absurd = MapHeader {
-                map_from_grid,
-                ..map(4, 3)
-            };
-            refused(&absurd, &CELLS, "an origin at x");
-        }
+        let absurd = MapHeader {
+            resolution_m: f64::NAN,
+            ..map(4, 3)
+        };
+        refused(&absurd, &CELLS, "allowed: 0.001..=10 m");
     }
 
     #[test]
@@ -135,10 +112,7 @@ mod tests {
             unknown_blocks: 1,
             ..map(4, 1)
         };
-        let error = extract(&map, &[100, UNKNOWN, UNKNOWN, 0]).unwrap_err();
-        assert!(
-            matches!(error, BoundaryError::NoBoundaryCell { occupied: 1 }),
-            "{error}"
-        );
+        let unseen = "1 occupied cells, but none touches";
+        refused(&map, &[100, UNKNOWN, UNKNOWN, 0], unseen);
     }
 }
