@@ -14,18 +14,11 @@ const WRITE: u32 = 0o022;
 
 /// Opens a regular file of this user or of root that no other user can write; `None` if there is no
 /// file. It neither follows a link nor waits for the writer of a pipe.
-///
-/// # Errors
-/// It is not a regular file, belongs to another user, can be changed by others, or cannot be
-/// opened.
 pub fn open(path: &Path) -> Result<Option<File>, TrustError> {
     open_as(current_user(), path)
 }
 
 /// Reads the text of such a file, with at most `most` bytes; `None` if there is no file.
-///
-/// # Errors
-/// See [`open`]; also if the file is longer or not UTF-8.
 pub fn read(path: &Path, most: u64) -> Result<Option<String>, TrustError> {
     let Some(file) = open(path)? else {
         return Ok(None);

@@ -16,9 +16,6 @@ const STICKY: u32 = 0o1000;
 /// belongs to this user or to root, and in folders writable by all, such as `/tmp`, users cannot
 /// replace files of others. The file at `path` must be a regular file of this user or root, or not
 /// exist.
-///
-/// # Errors
-/// A folder, link or file fails this check; the error names it.
 pub fn check_place(path: &Path) -> Result<(), TrustError> {
     check_place_as(current_user(), path)
 }

@@ -16,12 +16,8 @@ use crate::{Config, MapServerError};
 /// the longest wait of a late joiner for the map.
 const TICK: Duration = Duration::from_millis(250);
 
-/// Serves the map or the maps until the stop flag is set.
-///
-/// # Errors
-/// If the transport fails, or the recording of `--recorded` is broken. Maps that are missing or
-/// broken at the start are waited for; later, a broken map is reported in `health` and the previous
-/// one stays.
+/// Serves the map or the maps until the stop flag is set. Maps that are missing or broken at the
+/// start are waited for; later, a broken map is reported in `health` and the previous one stays.
 pub fn run(graph: &Graph, config: &Config) -> Result<(), MapServerError> {
     match &config.maps {
         Some(set) => several::run(graph, config, set),
@@ -32,9 +28,7 @@ pub fn run(graph: &Graph, config: &Config) -> Result<(), MapServerError> {
 pub fn check(config: &Config) -> Result<(), MapServerError> {
     match &config.maps {
         Some(set) => several::load(config, set).map(drop)?,
-        None => {
-            one::first(config)?.0?;
-        }
+        None => one::first(config)?.0.map(drop)?,
     }
     Ok(())
 }
@@ -108,11 +102,8 @@ mod tests {
             let checked = check(&Config::try_parse_from(words).unwrap());
             checked.map_or_else(|error| with_causes(&error), |()| String::new())
         };
-        for sound in [
-            "--map AT/map.yaml",
-            "--maps AT",
-            "--recorded AT/recording.mcap",
-        ] {
+        let recorded = "--recorded AT/recording.mcap";
+        for sound in ["--map AT/map.yaml", "--maps AT", recorded] {
             assert_eq!(checked(sound), "", "{sound}");
         }
         assert!(checked("--map AT/no.yaml").contains("no.yaml: No such file"));

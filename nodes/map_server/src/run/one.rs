@@ -50,9 +50,6 @@ pub(super) fn run(graph: &Graph, config: &Config) -> Result<(), MapServerError> 
 
 /// Returns the first map to serve, and true if its files may change: the map in a recording does
 /// not.
-///
-/// # Errors
-/// If the recording of `--recorded` is broken, or holds no map and there is no `--map`.
 pub(super) fn first(
     config: &Config,
 ) -> Result<(Result<OccupancyGrid, map::MapError>, bool), MapServerError> {
@@ -67,9 +64,7 @@ pub(super) fn first(
 
 /// Loads the map, if it fits into the graph's memory; logs unknown keys of its description.
 fn load(config: &Config, path: &Path) -> Result<OccupancyGrid, map::MapError> {
-    map::load_within(config.memory.limit(), path, |key| {
-        tracing::warn!("{key}");
-    })
+    map::load_within(config.memory.limit(), path, |key| tracing::warn!("{key}"))
 }
 
 /// Returns the last map of the recording from `--recorded`, if it contains one.
@@ -81,12 +76,11 @@ fn recorded(config: &Config) -> Result<Option<OccupancyGrid>, MapServerError> {
         path: path.clone(),
         source,
     })?;
-    match &grid {
-        Some(_) => {
-            tracing::info!(recording = %path.display(), "the map is that of the recording");
-        }
-        None => tracing::info!(recording = %path.display(), "the recording holds no map"),
-    }
+    let found = match &grid {
+        Some(_) => "the map is that of the recording",
+        None => "the recording holds no map",
+    };
+    tracing::info!(recording = %path.display(), "{found}");
     Ok(grid)
 }
 
@@ -162,14 +156,8 @@ impl Server {
     /// Keeps the served map, or waits for one if there is none.
     fn refuse(&mut self, error: &dyn Error, path: &Path) -> Result<(), TransportError> {
         let words = ("map", "is rejected, the previous one stays");
-        let is_served = self.served > 0;
-        reject(
-            &mut self.health,
-            is_served,
-            words,
-            &with_causes(error),
-            path,
-        )
+        let (is_served, problem) = (self.served > 0, with_causes(error));
+        reject(&mut self.health, is_served, words, &problem, path)
     }
 
     fn serve(&mut self, grid: &OccupancyGrid) -> Result<(), TransportError> {

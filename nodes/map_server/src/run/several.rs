@@ -76,6 +76,15 @@ struct LoadedMap {
     cells: Vec<u8>,
 }
 
+impl LoadedMap {
+    fn header_at(&self, stamp: Stamp) -> MapHeader {
+        MapHeader {
+            stamp,
+            ..self.header
+        }
+    }
+}
+
 /// Loads the maps, if all of them fit into the graph's memory.
 pub(super) fn load(config: &Config, path: &Path) -> Result<Loaded, MapError> {
     let set = map::set_of_noting(path, |line| tracing::info!("{line}"))?.select(&config.on)?;
@@ -125,15 +134,7 @@ impl Server {
     fn serve(&mut self, set: Loaded, shown: usize) -> Result<(), TransportError> {
         let stamp = now(self.served);
         let maps = set.maps.iter();
-        let maps = maps.map(|map| {
-            (
-                MapHeader {
-                    stamp,
-                    ..map.header
-                },
-                &map.cells[..],
-            )
-        });
+        let maps = maps.map(|map| (map.header_at(stamp), &map.cells[..]));
         let all = MapSet {
             maps: maps.collect(),
             transitions: set.transitions.clone(),
@@ -255,10 +256,7 @@ fn filled<'p>(
     stamp: Stamp,
 ) -> Result<Loan<'p, topic::Map>, TransportError> {
     let mut loan = publisher.loan(map.cells.len())?;
-    *loan.header_mut() = MapHeader {
-        stamp,
-        ..map.header
-    };
+    *loan.header_mut() = map.header_at(stamp);
     loan.items_mut().copy_from_slice(&map.cells);
     Ok(loan)
 }
