@@ -25,45 +25,48 @@ pub struct Rows {
 impl Rows {
     /// Adds the answer to a scan alone; returns the rows that are due.
     pub fn answer(&mut self, scan: Stamp, single: ScanAnswer) -> Vec<Row> {
-        if let Some(at) = self.find(scan) {
-            if let Some((_, row)) = self.waiting.get_mut(at) {
-                row.single = Some(single);
-            }
-            return self.release(at + 1);
-        }
-        if self.is_printed(scan) {
-            return Vec::new();
-        }
-        let row = Row {
-            stamp_ns: scan.measured_ns,
-            single: Some(single),
-            pose: None,
-        };
-        self.waiting.push_back((scan, row));
-        self.release(self.waiting.len().saturating_sub(CAPACITY))
+        let set = |row: &mut Row| row.single = Some(single);
+        self.add(scan, set, |rows, row| {
+            rows.waiting.push_back((scan, row));
+            rows.release(rows.waiting.len().saturating_sub(CAPACITY))
+        })
     }
 
     /// Adds the tracker's pose of a scan; returns the rows that are due.
     pub fn pose(&mut self, scan: Stamp, pose: TrackedPose) -> Vec<Row> {
-        if let Some(at) = self.find(scan) {
-            if let Some((_, row)) = self.waiting.get_mut(at) {
-                row.pose = Some(pose);
-            }
+        let set = |row: &mut Row| row.pose = Some(pose);
+        self.add(scan, set, |rows, row| {
+            let waiting = rows.waiting.iter();
+            let earlier = waiting.take_while(|(waiting, _)| is_before(*waiting, scan));
+            let released = rows.release(earlier.count());
+            rows.waiting.push_front((scan, row));
+            released
+        })
+    }
+
+    /// Sets a half of a scan's row, which makes the row due if the other half is there; `wait`
+    /// queues the row of a new scan.
+    fn add(
+        &mut self,
+        scan: Stamp,
+        set: impl FnOnce(&mut Row),
+        wait: impl FnOnce(&mut Self, Row) -> Vec<Row>,
+    ) -> Vec<Row> {
+        let mut waiting = self.waiting.iter_mut().enumerate();
+        if let Some((at, (_, row))) = waiting.find(|(_, (waiting, _))| waiting.is_of(scan)) {
+            set(row);
             return self.release(at + 1);
         }
         if self.is_printed(scan) {
             return Vec::new();
         }
-        let earlier = |(waiting, _): &(Stamp, Row)| is_before(*waiting, scan);
-        let due = self.waiting.iter().take_while(|entry| earlier(entry));
-        let released = self.release(due.count());
-        let row = Row {
+        let mut row = Row {
             stamp_ns: scan.measured_ns,
             single: None,
-            pose: Some(pose),
+            pose: None,
         };
-        self.waiting.push_front((scan, row));
-        released
+        set(&mut row);
+        wait(self, row)
     }
 
     pub fn finish(&mut self) -> Vec<Row> {
@@ -74,11 +77,6 @@ impl Rows {
     fn is_printed(&self, scan: Stamp) -> bool {
         let is_printed = |printed: Stamp| printed.is_of(scan) || is_before(scan, printed);
         self.printed.is_some_and(is_printed)
-    }
-
-    fn find(&self, scan: Stamp) -> Option<usize> {
-        let mut waiting = self.waiting.iter();
-        waiting.position(|(waiting, _)| waiting.is_of(scan))
     }
 
     fn release(&mut self, rows: usize) -> Vec<Row> {
