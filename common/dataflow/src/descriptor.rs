@@ -9,6 +9,14 @@ pub struct Dataflow {
     pub nodes: Vec<Node>,
 }
 
+impl Dataflow {
+    /// Returns the first node with this executable.
+    pub fn node(&self, executable: &str) -> Option<&Node> {
+        let mut nodes = self.nodes.iter();
+        nodes.find(|node| node.executable() == executable)
+    }
+}
+
 #[derive(Debug, Clone, PartialEq)]
 pub struct Node {
     /// Name of the node, unique in the graph.
@@ -105,13 +113,4 @@ pub enum RestartPolicy {
     OnFailure,
     /// Whenever it ends, also with exit code 0.
     Always,
-}
-
-impl RestartPolicy {
-    /// Each policy with its name in the file.
-    pub(crate) const NAMES: [(&str, RestartPolicy); 3] = [
-        ("never", RestartPolicy::Never),
-        ("on-failure", RestartPolicy::OnFailure),
-        ("always", RestartPolicy::Always),
-    ];
 }

@@ -1,6 +1,7 @@
 //! Errors in a descriptor.
 
-use std::{fmt::Write as _, io, path::PathBuf};
+use std::io;
+use std::path::{Path, PathBuf};
 
 use crate::{MAX_FILE_BYTES, Problem};
 
@@ -18,12 +19,8 @@ pub enum DataflowError {
 }
 
 /// Formats a line for each problem: `file:line:column: what`.
-fn lines(file: &std::path::Path, problems: &[Problem]) -> String {
-    let mut text = String::new();
-    for (i, problem) in problems.iter().enumerate() {
-        let separator = if i == 0 { "" } else { "\n" };
-        // Writing to a string cannot fail.
-        let _ = write!(text, "{separator}{}:{problem}", file.display());
-    }
-    text
+fn lines(file: &Path, problems: &[Problem]) -> String {
+    let line = |problem| format!("{}:{problem}", file.display());
+    let lines: Vec<String> = problems.iter().map(line).collect();
+    lines.join("\n")
 }

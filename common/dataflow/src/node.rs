@@ -196,14 +196,14 @@ fn check_path(path: &str) -> Result<(), String> {
 }
 
 fn read_policy(text: &Text) -> Result<RestartPolicy, String> {
-    RestartPolicy::NAMES
-        .iter()
-        .find(|(name, _)| *name == text.value)
-        .map(|(_, policy)| *policy)
-        .ok_or_else(|| {
-            let found = &text.value;
-            format!("unknown restart_policy `{found}`; allowed are never, on-failure and always")
-        })
+    match text.value.as_str() {
+        "never" => Ok(RestartPolicy::Never),
+        "on-failure" => Ok(RestartPolicy::OnFailure),
+        "always" => Ok(RestartPolicy::Always),
+        found => Err(format!(
+            "unknown restart_policy `{found}`; allowed are never, on-failure and always"
+        )),
+    }
 }
 
 /// Reads `topic: node/topic`; errors are reported by the wiring check.
@@ -245,10 +245,8 @@ mod tests {
     use crate::parse;
 
     fn faults(text: &str) -> Vec<String> {
-        match parse(text, &Topics::default()) {
-            Ok(_) => Vec::new(),
-            Err(problems) => problems.iter().map(ToString::to_string).collect(),
-        }
+        let problems = parse(text, &Topics::default()).err().unwrap_or_default();
+        problems.iter().map(ToString::to_string).collect()
     }
 
     #[test]
@@ -283,10 +281,8 @@ nodes:
         assert_eq!(node.args, ["--recording", "my file.mcap", "--rate", "max"]);
         assert_eq!(node.env[0], ("RUST_LOG".to_owned(), "debug".to_owned()));
         assert_eq!(node.env[1], ("N".to_owned(), "3".to_owned()));
-        assert_eq!(
-            node.build[0].to_string(),
-            "cargo build --release -p replayer"
-        );
+        let build = "cargo build --release -p replayer";
+        assert_eq!(node.build[0].to_string(), build);
         assert_eq!(node.restart.policy, RestartPolicy::OnFailure);
         assert_eq!(node.restart.max_restarts, 3);
         assert_eq!(node.restart.delay, Duration::from_millis(500));
@@ -358,15 +354,11 @@ nodes:
     fn a_graph_has_some_nodes_but_not_too_many() {
         assert!(faults("nodes: []")[0].contains("at least one"));
         let graph = |n: usize| {
-            let nodes: String = (0..n)
-                .map(|i| format!("  - {{id: n{i}, path: x}}\n"))
-                .collect();
-            format!("nodes:\n{nodes}")
+            let node = |i| format!("  - {{id: n{i}, path: x}}\n");
+            format!("nodes:\n{}", (0..n).map(node).collect::<String>())
         };
         assert_eq!(faults(&graph(64)), [""; 0]);
-        assert_eq!(
-            faults(&graph(65)),
-            ["2:3: 65 nodes; at most 64 are allowed"]
-        );
+        let many = "2:3: 65 nodes; at most 64 are allowed";
+        assert_eq!(faults(&graph(65)), [many]);
     }
 }

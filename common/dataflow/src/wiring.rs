@@ -179,10 +179,8 @@ mod tests {
     };
 
     fn read(nodes: &[&str]) -> Result<Dataflow, Vec<Problem>> {
-        let nodes: String = nodes
-            .iter()
-            .map(|n| format!("  - {{path: x, {n}}}\n"))
-            .collect();
+        let node = |n: &&str| format!("  - {{path: x, {n}}}\n");
+        let nodes: String = nodes.iter().map(node).collect();
         parse(&format!("nodes:\n{nodes}"), &TOPICS)
     }
 
@@ -197,10 +195,8 @@ mod tests {
 
     #[test]
     fn ids_are_unique() {
-        check(
-            &["id: a", "id: b", "id: a"],
-            &["4:19: a second node with the id `a`"],
-        );
+        let second = "4:19: a second node with the id `a`";
+        check(&["id: a", "id: b", "id: a"], &[second]);
     }
 
     #[test]
@@ -237,12 +233,8 @@ mod tests {
         assert_eq!(graph.nodes[2].outputs, ["scan"]);
         assert_eq!(graph.nodes[2].streams, ["left", "right"]);
         let wrong = text.replace("x: both/scan_right", "votes: front/health");
-        let problems = parse(&wrong, &topics).unwrap_err();
-        assert!(
-            problems[0].to_string().contains("does not list it"),
-            "{}",
-            problems[0]
-        );
+        let said = parse(&wrong, &topics).unwrap_err()[0].to_string();
+        assert!(said.contains("does not list it"), "{said}");
         let wrong = text.replace("[scan_left, scan_right]", "[scan_left, scan_left]");
         assert!(parse(&wrong, &topics).is_err());
     }
@@ -250,10 +242,8 @@ mod tests {
     #[test]
     fn a_topic_has_one_sender() {
         let nodes = ["a", "b"].map(|id| format!("id: {id}, outputs: [scan, health]"));
-        check(
-            &[&nodes[0], &nodes[1]],
-            &["3:32: `scan` is already sent by `a`"],
-        );
+        let sent = "3:32: `scan` is already sent by `a`";
+        check(&[&nodes[0], &nodes[1]], &[sent]);
     }
 
     #[test]
@@ -266,9 +256,10 @@ mod tests {
         receiver("scan: c/scan", "3:37: the input `scan` comes from `c`");
         receiver("health: a/health", "3:39: the input `health` takes");
         receiver("scan: a/votes", "3:37: the input `scan` takes the topic");
+        let itself = "2:54: the input `scan` of `a` comes from `a` itself";
         check(
             &["id: a, outputs: [scan], inputs: {scan: a/scan}"],
-            &["2:54: the input `scan` of `a` comes from `a` itself"],
+            &[itself],
         );
     }
 }

@@ -28,8 +28,9 @@ pub struct StatusConfig {
     json: bool,
 }
 
+/// Graph that a command is for.
 #[derive(Debug, Args)]
-pub struct StopConfig {
+pub struct OneGraph {
     /// The graph [default: the only one that this user runs]
     #[arg(long, value_name = "NAME", value_parser = GraphName::new)]
     graph: Option<GraphName>,
@@ -40,9 +41,8 @@ pub struct RestartConfig {
     /// The node's id in the descriptor
     node: String,
 
-    /// The graph [default: the only one that this user runs]
-    #[arg(long, value_name = "NAME", value_parser = GraphName::new)]
-    graph: Option<GraphName>,
+    #[command(flatten)]
+    graph: OneGraph,
 }
 
 #[derive(Debug, Args)]
@@ -50,9 +50,8 @@ pub struct RecordConfig {
     /// Start a recording, or stop the one that runs
     action: RecordAction,
 
-    /// The graph [default: the only one that this user runs]
-    #[arg(long, value_name = "NAME", value_parser = GraphName::new)]
-    graph: Option<GraphName>,
+    #[command(flatten)]
+    graph: OneGraph,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
@@ -80,8 +79,8 @@ pub fn status(config: &StatusConfig) -> anyhow::Result<ExitCode> {
 }
 
 /// Stops a graph in order and waits until it has ended and its name is free.
-pub fn stop(config: &StopConfig) -> anyhow::Result<ExitCode> {
-    let graph = the_graph(config.graph.as_ref())?;
+pub fn stop(graph: &OneGraph) -> anyhow::Result<ExitCode> {
+    let graph = graph.find()?;
     asked(&graph, &Question::Stop)?;
     wait_while(&format!("graph {graph}"), || Ok(is_launched(&graph)))?;
     Ok(ExitCode::SUCCESS)
@@ -89,7 +88,7 @@ pub fn stop(config: &StopConfig) -> anyhow::Result<ExitCode> {
 
 /// Starts or stops a recording of a graph and prints its file, complete once stopped.
 pub fn record(config: &RecordConfig) -> anyhow::Result<ExitCode> {
-    let graph = the_graph(config.graph.as_ref())?;
+    let graph = config.graph.find()?;
     let on = config.action == RecordAction::Start;
     let Answer::Record(file) = asked(&graph, &Question::Record { on })? else {
         return Err(wrong_use("unexpected answer"));
@@ -116,25 +115,27 @@ fn wait_while(what: &str, mut runs: impl FnMut() -> anyhow::Result<bool>) -> any
 }
 
 pub fn restart(config: &RestartConfig) -> anyhow::Result<ExitCode> {
-    let graph = the_graph(config.graph.as_ref())?;
+    let graph = config.graph.find()?;
     let node = config.node.clone();
     asked(&graph, &Question::Restart { node })?;
     Ok(ExitCode::SUCCESS)
 }
 
-pub(super) fn the_graph(named: Option<&GraphName>) -> anyhow::Result<GraphName> {
-    if let Some(graph) = named {
-        return Ok(graph.clone());
-    }
-    match &running_graphs()[..] {
-        [] => Err(no_graph()),
-        [graph] => Ok(graph.clone()),
-        several => {
-            let names: Vec<_> = several.iter().map(ToString::to_string).collect();
-            let names = names.join(", ");
-            Err(wrong_use(format!(
-                "several graphs are running: choose one with --graph; running are {names}"
-            )))
+impl OneGraph {
+    pub(super) fn find(&self) -> anyhow::Result<GraphName> {
+        if let Some(graph) = &self.graph {
+            return Ok(graph.clone());
+        }
+        match &running_graphs()[..] {
+            [] => Err(no_graph()),
+            [graph] => Ok(graph.clone()),
+            several => {
+                let names: Vec<_> = several.iter().map(ToString::to_string).collect();
+                let names = names.join(", ");
+                Err(wrong_use(format!(
+                    "several graphs are running: choose one with --graph; running are {names}"
+                )))
+            }
         }
     }
 }

@@ -8,9 +8,9 @@ use command_line::stdout::print;
 use messages::{LogHeader, LogLevel, topic};
 use schemars::JsonSchema;
 use serde::Serialize;
-use transport::{Flow, Graph, GraphName, is_launched};
+use transport::{Flow, Graph, is_launched};
 
-use super::command::{known_node, the_graph};
+use super::command::{OneGraph, known_node};
 use crate::run::console::{LAUNCHER, say};
 
 /// Time to wait for the lines that nodes keep for late subscribers.
@@ -31,13 +31,12 @@ pub struct LogsConfig {
     #[arg(long)]
     json: bool,
 
-    /// The graph [default: the only one that this user runs]
-    #[arg(long, value_name = "NAME", value_parser = GraphName::new)]
-    graph: Option<GraphName>,
+    #[command(flatten)]
+    graph: OneGraph,
 }
 
 pub fn logs(config: &LogsConfig) -> anyhow::Result<ExitCode> {
-    let name = the_graph(config.graph.as_ref())?;
+    let name = config.graph.find()?;
     let graph = Graph::join_named("logs", &name)?;
     let lines = graph.subscriber::<topic::Log>()?;
     let begin = Instant::now();

@@ -5,6 +5,6 @@ mod logs;
 mod text;
 
 pub use command::{
-    RecordConfig, RestartConfig, StatusConfig, StopConfig, record, restart, status, stop,
+    OneGraph, RecordConfig, RestartConfig, StatusConfig, record, restart, status, stop,
 };
 pub use logs::{LogLine, LogsConfig, logs};

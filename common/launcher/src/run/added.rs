@@ -30,13 +30,11 @@ pub(crate) fn check_new(dataflow: &Dataflow, option: &str, id: &str) -> anyhow::
 }
 
 fn path(dataflow: &Dataflow, executable: &str) -> String {
-    let folder = dataflow
-        .nodes
-        .iter()
-        .find_map(|node| node.path.rsplit_once('/'));
-    folder.map_or(executable.to_owned(), |(folder, _)| {
-        format!("{folder}/{executable}")
-    })
+    let mut nodes = dataflow.nodes.iter();
+    match nodes.find_map(|node| node.path.rsplit_once('/')) {
+        Some((folder, _)) => format!("{folder}/{executable}"),
+        None => executable.to_owned(),
+    }
 }
 
 /// Returns the first cargo build command extended by `executable`, as cargo may rebuild shared
@@ -47,16 +45,12 @@ pub(crate) fn build(dataflow: &mut Dataflow, executable: &str) -> Vec<Command> {
     };
     let before = like.build.clone();
     let mut build = before.clone();
+    let package = ["--package", executable].map(str::to_owned);
     for command in build.iter_mut().filter(|command| is_cargo(command)) {
-        command
-            .args
-            .extend(["--package", executable].map(str::to_owned));
+        command.args.extend(package.clone());
     }
-    for node in dataflow
-        .nodes
-        .iter_mut()
-        .filter(|node| node.build == before)
-    {
+    let nodes = dataflow.nodes.iter_mut();
+    for node in nodes.filter(|node| node.build == before) {
         node.build.clone_from(&build);
     }
     build

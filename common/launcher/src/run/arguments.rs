@@ -36,23 +36,18 @@ pub fn find<'d>(
     option: &'static str,
     file: &Path,
 ) -> anyhow::Result<&'d mut Node> {
-    let found: Vec<_> = dataflow
-        .nodes
-        .iter()
-        .map(|n| n.executable().to_owned())
-        .collect();
-    dataflow
-        .nodes
-        .iter_mut()
-        .find(|n| executables.contains(&n.executable()))
-        .ok_or_else(|| {
-            let (executable, found) = (executables.join(" or "), found.join(", "));
-            wrong_use(format!(
-                "{option} is for the {executable}, but no node in {} has a path that ends so; \
-                 its executables are {found}",
-                file.display()
-            ))
-        })
+    let nodes = &mut dataflow.nodes;
+    let is_meant = |node: &Node| executables.contains(&node.executable());
+    let Some(at) = nodes.iter().position(is_meant) else {
+        let found: Vec<&str> = nodes.iter().map(Node::executable).collect();
+        let (executable, found) = (executables.join(" or "), found.join(", "));
+        return Err(wrong_use(format!(
+            "{option} is for the {executable}, but no node in {} has a path that ends so; \
+             its executables are {found}",
+            file.display()
+        )));
+    };
+    Ok(&mut nodes[at])
 }
 
 pub fn set(node: &mut Node, option: &str, value: Option<&str>) {
@@ -67,9 +62,8 @@ pub fn unset(node: &mut Node, option: &str, takes_value: bool) {
     let mut kept = Vec::with_capacity(node.args.len());
     let mut args = std::mem::take(&mut node.args).into_iter();
     while let Some(arg) = args.next() {
-        let joined = arg
-            .strip_prefix(option)
-            .is_some_and(|rest| rest.starts_with('='));
+        let rest = arg.strip_prefix(option);
+        let joined = rest.is_some_and(|rest| rest.starts_with('='));
         if arg == option && takes_value {
             args.next();
         } else if arg != option && !joined {

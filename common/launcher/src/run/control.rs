@@ -116,14 +116,11 @@ fn serve(mut stream: &UnixStream, asked: &Sender<Asked>, waker: &Waker) -> std::
         Err(error) => Answer::Refused(format!("this version does not know the request: {error}")),
         Ok(question) => {
             let (answer, answered) = channel();
-            let busy = || Answer::Refused("the launcher does not answer".to_owned());
-            match asked.send(Asked { question, answer }) {
-                Ok(()) => {
-                    waker.wake();
-                    answered.recv_timeout(TIMEOUT).unwrap_or_else(|_| busy())
-                }
-                Err(_) => busy(),
-            }
+            // If it cannot be asked, the sender of the answer is dropped.
+            let _ = asked.send(Asked { question, answer });
+            waker.wake();
+            let busy = |_| Answer::Refused("the launcher does not answer".to_owned());
+            answered.recv_timeout(TIMEOUT).unwrap_or_else(busy)
         }
     };
     let mut text = serde_json::to_string(&answer)?;

@@ -84,17 +84,14 @@ impl Crew {
             _ => false,
         };
         if let Some(member) = self.members.iter_mut().find(is_it) {
-            member
-                .pulse
-                .received(NodeState::from_code(report.state), now);
+            let state = NodeState::from_code(report.state);
+            member.pulse.received(state, now);
         }
     }
 
     pub fn status(&self, now: Instant) -> Vec<NodeStatus> {
-        self.members
-            .iter()
-            .map(|member| member.status(now))
-            .collect()
+        let members = self.members.iter();
+        members.map(|member| member.status(now)).collect()
     }
 
     /// Ends a node in order and starts it again at once; returns true if there is such a node.
@@ -103,14 +100,7 @@ impl Crew {
             return Ok(false);
         };
         member.given_up = None;
-        match &member.state {
-            State::Running(process) => {
-                member.wanted = Some(Wanted::Restart);
-                let asked = process.signal(Signal::SIGTERM);
-                asked.with_context(|| not_supervised(&member.node, process.pid()))?;
-            }
-            State::Due(_) | State::Done => member.state = State::Due(now),
-        }
+        member.ask_to_end(Wanted::Restart, State::Due(now))?;
         Ok(true)
     }
 
@@ -122,16 +112,8 @@ impl Crew {
     }
 
     pub fn end(&mut self, id: &str) -> anyhow::Result<()> {
-        for member in self.members.iter_mut().filter(|m| m.node.id == id) {
-            if let State::Running(process) = &member.state {
-                member.wanted = Some(Wanted::End);
-                let asked = process.signal(Signal::SIGTERM);
-                asked.with_context(|| not_supervised(&member.node, process.pid()))?;
-            } else {
-                member.state = State::Done;
-            }
-        }
-        Ok(())
+        let mut members = self.members.iter_mut().filter(|m| m.node.id == id);
+        members.try_for_each(|member| member.ask_to_end(Wanted::End, State::Done))
     }
 
     /// Returns the node with this id if it runs or is due to start.
@@ -172,10 +154,8 @@ impl Crew {
     }
 
     pub fn nodes_with_data_loss(&self) -> Vec<String> {
-        let nodes_with_data_loss = self.members.iter().filter(|member| member.lost_data);
-        nodes_with_data_loss
-            .map(|member| member.node.id.clone())
-            .collect()
+        let members = self.members.iter().filter(|member| member.lost_data);
+        members.map(|member| member.node.id.clone()).collect()
     }
 
     /// Sends `signal` to all processes of one executable and returns their number.

@@ -149,23 +149,13 @@ fn forward_heading(
         HeadingSource::Odometry { .. } | HeadingSource::Truth => "--heading-from",
     };
     let node = find(dataflow, &[ACCUMULATOR], option, file)?;
+    let number = |number: Option<f64>| number.map(|number| number.to_string());
+    let source = heading.heading_from.map(|source| source.to_string());
     let values = [
-        (
-            "--heading",
-            heading.heading.map(|degrees| degrees.to_string()),
-        ),
-        (
-            "--heading-from",
-            heading.heading_from.map(|source| source.to_string()),
-        ),
-        (
-            "--heading-offset",
-            heading.heading_offset.map(|degrees| degrees.to_string()),
-        ),
-        (
-            MAX_AGE,
-            heading.heading_max_age_s.map(|seconds| seconds.to_string()),
-        ),
+        ("--heading", number(heading.heading)),
+        ("--heading-from", source),
+        ("--heading-offset", number(heading.heading_offset)),
+        (MAX_AGE, number(heading.heading_max_age_s)),
     ];
     if let Some(source) = heading.heading_from {
         check_wired(node, source, file)?;

@@ -64,17 +64,13 @@ impl Journal {
             if answer.best.laser.is_some() || self.frame.is_none() {
                 self.show_header(answer.best.frame, ScanAnswer::header);
             }
+            let text = answer.text();
             let row = Row {
                 stamp_ns: answer.stamp_ns,
                 single: Some(answer),
                 pose: None,
             };
-            let text = |row: &Row| {
-                row.single
-                    .as_ref()
-                    .map_or_else(String::new, ScanAnswer::text)
-            };
-            return self.output.line(shown(self.json, &row, text));
+            return self.output.line(shown(self.json, &row, |_| text.clone()));
         };
         let due = rows.answer(header.stamp, answer);
         self.print(&due)
@@ -93,11 +89,8 @@ impl Journal {
     fn print(&mut self, rows: &[Row]) -> Reader {
         let mut reader = Reader::Reads;
         for row in rows {
-            let of = || {
-                row.pose
-                    .as_ref()
-                    .map_or(Frame::Laser, |pose| pose.place.frame)
-            };
+            let pose = row.pose.as_ref();
+            let of = || pose.map_or(Frame::Laser, |pose| pose.place.frame);
             if let Some(frame) = row.frame().or_else(|| self.frame.is_none().then(of)) {
                 self.show_header(frame, Row::header);
             }
@@ -128,11 +121,8 @@ impl Journal {
         }
         let unprinted = self.output.finish(patience)?;
         if unprinted > 0 {
-            let why = "standard output was not read in time";
-            say(
-                LAUNCHER,
-                &format!("{unprinted} lines were not printed: {why}"),
-            );
+            let lost = "lines were not printed: standard output was not read in time";
+            say(LAUNCHER, &format!("{unprinted} {lost}"));
         }
         Ok(summary)
     }

@@ -9,7 +9,8 @@ use messages::{Topic, topic};
 use super::arguments::{ACCUMULATOR, TRACKER, set, value};
 use super::shared;
 
-const LMS_READER: &str = "lms_reader";
+/// Node that reads a laser.
+pub(crate) const LMS_READER: &str = "lms_reader";
 const SCANS: &str = "--scans";
 const LASER: &str = "--laser";
 
@@ -62,8 +63,7 @@ pub(crate) fn join(dataflow: &mut Dataflow, lasers: &[String]) {
 
 /// Returns the laser whose scans trigger answers, if the graph has several lasers.
 pub(crate) fn first(dataflow: &Dataflow, folder: &Path) -> anyhow::Result<Option<String>> {
-    let mut nodes = dataflow.nodes.iter();
-    let Some(accumulator) = nodes.find(|node| node.executable() == ACCUMULATOR) else {
+    let Some(accumulator) = dataflow.node(ACCUMULATOR) else {
         return Ok(None);
     };
     let scans = shared::given(accumulator, "scans", folder)?;

@@ -65,40 +65,39 @@ pub fn run(config: &Config) -> anyhow::Result<ExitCode> {
         true => Builds::LeaveOut,
         false => Builds::Run,
     };
+    let options = &config.options;
     let mut descriptor = descriptor::load(&config.dataflow, builds)?;
     if descriptor.file != config.dataflow {
-        note(&format!(
-            "no graph is named: {} is run",
-            descriptor.file.display()
-        ));
+        let file = descriptor.file.display();
+        note(&format!("no graph is named: {file} is run"));
     }
-    forward::apply(&config.options, &mut descriptor.dataflow, &descriptor.file)?;
-    lasers::name(&mut descriptor.dataflow, &descriptor.folder)?;
-    shared::check(&descriptor.dataflow, &descriptor.folder)?;
-    tracker::settle(&mut descriptor.dataflow);
-    record::add(
-        &config.options.record,
-        &mut descriptor.dataflow,
-        &descriptor.file,
-        &descriptor.folder,
-    )?;
-    if config.options.foxglove {
-        foxglove::add(&mut descriptor.dataflow)?;
+    let Descriptor {
+        dataflow,
+        file,
+        folder,
+    } = &mut descriptor;
+    forward::apply(options, dataflow, file)?;
+    lasers::name(dataflow, folder)?;
+    shared::check(dataflow, folder)?;
+    tracker::settle(dataflow);
+    record::add(&options.record, dataflow, file, folder)?;
+    if options.foxglove {
+        foxglove::add(dataflow)?;
     }
-    build::build_all(&descriptor.dataflow, &descriptor.folder)?;
+    build::build_all(dataflow, folder)?;
     let _claim = Claim::take(&graph)?;
     remove_dead_graphs();
     make_way(&graph)?;
 
-    let lossless = forward::plays_at_max(&descriptor.dataflow);
+    let lossless = forward::plays_at_max(dataflow);
     if lossless {
-        replay::keep_in_step(&mut descriptor.dataflow, LAUNCHER);
+        replay::keep_in_step(dataflow, LAUNCHER);
     }
     let output = Output::start(io::stdout())?;
-    let is_tracked = tracker::has_tracker(&descriptor.dataflow);
-    let folder = config.options.log_folder.as_deref();
-    let logs = folder.map(LogFiles::create).transpose()?;
-    let mut journal = Journal::new(output, config.options.json, is_tracked, logs);
+    let is_tracked = tracker::has_tracker(dataflow);
+    let log_folder = options.log_folder.as_deref();
+    let logs = log_folder.map(LogFiles::create).transpose()?;
+    let mut journal = Journal::new(output, options.json, is_tracked, logs);
     let outcome = loop {
         let outcome = launch(&descriptor, &graph, &mut journal);
         let error = outcome.as_ref().err().and_then(|e| e.downcast_ref());
@@ -112,9 +111,8 @@ pub fn run(config: &Config) -> anyhow::Result<ExitCode> {
         say(LAUNCHER, "the whole graph is restarted");
     };
     let cleared = clear(&graph);
-    let finished = outcome
-        .as_ref()
-        .is_ok_and(|course| course.end == End::Finished);
+    let course = outcome.as_ref();
+    let finished = course.is_ok_and(|course| course.end == End::Finished);
     let summary_wanted = outcome.is_ok() || journal.report.any_answer();
     let summary = journal.finish(summary_wanted, (!finished).then_some(LAST_OUTPUT));
     // The first error says most.
@@ -122,10 +120,8 @@ pub fn run(config: &Config) -> anyhow::Result<ExitCode> {
     cleared?;
     let summary = summary?;
     if !nodes_with_data_loss.is_empty() {
-        say(
-            LAUNCHER,
-            &format!("{} lost data", nodes_with_data_loss.join(", ")),
-        );
+        let nodes = nodes_with_data_loss.join(", ");
+        say(LAUNCHER, &format!("{nodes} lost data"));
         return Ok(ExitCode::from(LOST_DATA));
     }
     if finished && lossless && summary.lost_data() {
@@ -157,13 +153,8 @@ fn launch(
         recorder: Recorder::of(descriptor),
         started: Instant::now(),
     };
-    let end = stay(
-        &graph,
-        (&watch, &save, &control_port),
-        &mut crew,
-        &mut health,
-        journal,
-    );
+    let asked = (&watch, &*save, &control_port);
+    let end = stay(&graph, asked, &mut crew, &mut health, journal);
     if let Err(error) = &end {
         // The console prints the error after all nodes have ended; a recorder needs it before.
         log_in_graph(LogLevel::Error, &format!("{error:#}"));

@@ -90,14 +90,7 @@ impl LogFiles {
 
 /// Makes a node's name safe as a file name: any member of the graph may log.
 fn file_name(node: &str) -> String {
-    let plain = |c: char| {
-        if c.is_ascii_alphanumeric() || c == '-' {
-            c
-        } else {
-            '_'
-        }
-    };
-    node.chars().map(plain).collect()
+    node.replace(|c: char| !c.is_ascii_alphanumeric() && c != '-', "_")
 }
 
 #[cfg(test)]
@@ -130,18 +123,16 @@ mod tests {
             let texts = lines.map(|line: serde_json::Value| line["text"].clone());
             texts.collect::<Vec<_>>()
         };
-        for (number, name) in ["tracker.jsonl", "tracker.1.jsonl", "tracker.4.jsonl"]
-            .iter()
-            .enumerate()
-        {
-            let age = [0, 1, 4][number];
-            assert_eq!(read(name), [format!("line {}", 7 - age)]);
+        for (name, text) in [
+            ("tracker.jsonl", "line 7"),
+            ("tracker.1.jsonl", "line 6"),
+            ("tracker.4.jsonl", "line 3"),
+            ("___map.jsonl", "elsewhere"),
+        ] {
+            assert_eq!(read(name), [text], "{name}");
         }
-        assert_eq!(read("___map.jsonl"), ["elsewhere"]);
-        let count = std::fs::read_dir(folder.path().join("logs"))
-            .unwrap()
-            .count();
-        assert_eq!(count, 1 + KEPT + 1);
+        let files = std::fs::read_dir(folder.path().join("logs")).unwrap();
+        assert_eq!(files.count(), 1 + KEPT + 1);
     }
 
     #[test]

@@ -137,6 +137,17 @@ pub struct RecordOptions {
     pub record_field: bool,
 }
 
+impl RecordOptions {
+    /// Returns the options that end a file before the graph does, with their values.
+    pub(crate) fn ending(&self) -> [(&'static str, Option<&str>); 3] {
+        [
+            ("--keep", self.keep.as_deref()),
+            ("--split-time", self.split_time.as_deref()),
+            ("--split-size", self.split_size.as_deref()),
+        ]
+    }
+}
+
 impl Options {
     /// Returns the name of the graph to start: from the option, from the environment, or a random
     /// one. A random name is unique even among containers that share the memory of this machine.

@@ -28,14 +28,9 @@ pub(crate) fn add(
     let mut node = node(dataflow, file, folder);
     node.build = added::build(dataflow, RECORDER);
     set(&mut node, "--output", Some(&output.to_string_lossy()));
-    let passed_on = [
-        ("--keep", options.keep.as_ref()),
-        ("--split-time", options.split_time.as_ref()),
-        ("--split-size", options.split_size.as_ref()),
-    ];
-    for (name, value) in passed_on {
-        if let Some(value) = value {
-            set(&mut node, name, Some(value));
+    for (name, value) in options.ending() {
+        if value.is_some() {
+            set(&mut node, name, value);
         }
     }
     if options.record_field {
@@ -61,8 +56,7 @@ pub(super) fn node(dataflow: &Dataflow, file: &Path, folder: &Path) -> Node {
 
 fn check(output: &Path, options: &RecordOptions, dataflow: &Dataflow) -> anyhow::Result<()> {
     added::check_new(dataflow, "--record", RECORDER)?;
-    let is_whole =
-        options.keep.is_none() && options.split_time.is_none() && options.split_size.is_none();
+    let is_whole = options.ending().iter().all(|(_, value)| value.is_none());
     output::prepare(output, options.force || !is_whole)?;
     // The recorder overwrites nothing, and would add a number to the name.
     if is_whole && output.exists() {
@@ -74,13 +68,9 @@ fn check(output: &Path, options: &RecordOptions, dataflow: &Dataflow) -> anyhow:
 
 /// Returns the files to attach: the descriptor, the served map and its image, if they exist.
 fn attached(dataflow: &Dataflow, file: &Path, folder: &Path) -> Vec<PathBuf> {
-    let server = dataflow
-        .nodes
-        .iter()
-        .find(|node| node.executable() == MAP_SERVER);
-    let yaml = server
-        .and_then(|server| value(server, "--map"))
-        .map(|map| folder.join(map));
+    let server = dataflow.node(MAP_SERVER);
+    let map = server.and_then(|server| value(server, "--map"));
+    let yaml = map.map(|map| folder.join(map));
     let image = yaml.as_ref().and_then(|yaml| map::image_of(yaml).ok());
     let descriptor = std::path::absolute(file).ok();
     let all = [descriptor, yaml, image].into_iter().flatten();
@@ -115,17 +105,10 @@ mod tests {
             panic!("{dataflow:?}");
         };
         assert_eq!(replayer.args, ["--wait-for=a,recorder"]);
-        assert_eq!(
-            (&*recorder.path, &*recorder.id),
-            ("bin/recorder", "recorder")
-        );
-        assert_eq!(
-            recorder.args,
-            [
-                &format!("--output={}", output.display()),
-                "--split-time=10m"
-            ]
-        );
+        assert_eq!(&*recorder.path, "bin/recorder");
+        assert_eq!(&*recorder.id, "recorder");
+        let to = format!("--output={}", output.display());
+        assert_eq!(recorder.args, [&to, "--split-time=10m"]);
         assert!(output.parent().unwrap().is_dir());
         let build = "cargo build --package replayer --package recorder";
         for node in [replayer, accumulator, recorder] {
@@ -151,10 +134,7 @@ mod tests {
         refused("/s.mcap", GRAPH, "r.mcap/s.mcap: not a directory");
         add(" --force", GRAPH).unwrap();
         assert!(!existing.exists());
-        refused(
-            "",
-            "nodes: [{id: x, path: bin/recorder}]",
-            "has one already",
-        );
+        let recorder = "nodes: [{id: x, path: bin/recorder}]";
+        refused("", recorder, "has one already");
     }
 }

@@ -29,8 +29,7 @@ impl Recorder {
             file,
             folder,
         } = descriptor;
-        let mut nodes = dataflow.nodes.iter();
-        let node = nodes.find(|node| node.executable() == RECORDER).cloned();
+        let node = dataflow.node(RECORDER).cloned();
         let node = node.unwrap_or_else(|| record::node(dataflow, file, folder));
         let current = env::current_dir().unwrap_or_default();
         let output = value(&node, "--output").map(|output| current.join(folder).join(output));

@@ -54,9 +54,8 @@ impl Report {
 
     pub(crate) fn maps(&mut self, set: &MapSet<'_>) {
         let maps = set.maps.iter();
-        self.maps = maps
-            .map(|(map, _)| (map.map_id, map.name.to_string()))
-            .collect();
+        let names = maps.map(|(map, _)| (map.map_id, map.name.to_string()));
+        self.maps = names.collect();
     }
 
     fn map(&self, map_id: u64) -> Option<String> {
@@ -84,12 +83,9 @@ impl Report {
         self.cpu_ms.add(line.cpu_ms);
         self.graph_ms.add(latency_ms - line.cpu_ms);
         let has_pose = line.best.laser.is_some();
+        let found = found.iter().filter(|_| has_pose);
         let answer = Answer {
-            poses: found
-                .iter()
-                .filter(|_| has_pose)
-                .map(|h| h.map_from_laser.into())
-                .collect(),
+            poses: found.map(|h| h.map_from_laser.into()).collect(),
             verdict: Verdict::from_code(header.verdict),
         };
         self.pairs.answer(header.stamp.measured_ns, answer);

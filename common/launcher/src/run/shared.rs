@@ -47,11 +47,7 @@ struct Shared {
 }
 
 pub(crate) fn check(dataflow: &Dataflow, folder: &Path) -> anyhow::Result<()> {
-    let find = |executable| {
-        let mut nodes = dataflow.nodes.iter();
-        nodes.find(|node| node.executable() == executable)
-    };
-    let Some(tracker) = find(TRACKER) else {
+    let Some(tracker) = dataflow.node(TRACKER) else {
         return Ok(());
     };
     let of_tracker = all_given(tracker, folder)?;
@@ -59,7 +55,7 @@ pub(crate) fn check(dataflow: &Dataflow, folder: &Path) -> anyhow::Result<()> {
         (ACCUMULATOR, &READING_KEYS[..]),
         (PEAK_EXTRACTOR, &FIT_KEYS),
     ] {
-        let Some(node) = find(executable) else {
+        let Some(node) = dataflow.node(executable) else {
             continue;
         };
         let of_node = all_given(node, folder)?;

@@ -61,10 +61,8 @@ impl Summary {
         }
         lines.extend(accuracy_lines(&self.accuracy));
         if self.searched > 0 {
-            lines.push(format!(
-                "latency    {} from scan to pose",
-                tail(self.latency_ms)
-            ));
+            let latency = tail(self.latency_ms);
+            lines.push(format!("latency    {latency} from scan to pose"));
             lines.push(format!("engine     {} of it", tail(self.cpu_ms)));
             lines.push(format!("graph      {} on top", tail(self.graph_ms)));
         }
@@ -77,16 +75,12 @@ fn tracking_lines(tracking: &TrackingFigures) -> Vec<String> {
         let share = tracking.states.get(state.as_str()).copied();
         format!("{state} {} %", percent(Some(share.unwrap_or_default())))
     });
-    let mut lines = vec![format!(
-        "tracker    {} of {} scans",
-        shares.join(", "),
-        tracking.scans
-    )];
+    let (shares, scans) = (shares.join(", "), tracking.scans);
+    let mut lines = vec![format!("tracker    {shares} of {scans} scans")];
     lines.extend(accuracy_lines(&tracking.accuracy));
     let latency = tail(tracking.latency_ms);
-    lines.push(format!(
-        "latency    {latency} from scan to the tracker's pose"
-    ));
+    let of_tracker = "from scan to the tracker's pose";
+    lines.push(format!("latency    {latency} {of_tracker}"));
     lines
 }
 
@@ -123,11 +117,8 @@ fn percent(share: Option<f64>) -> String {
 }
 
 fn tail(tail: Tail) -> String {
-    format!(
-        "p50 {} ms, p99 {} ms",
-        number(tail.median, 2),
-        number(tail.p99, 2)
-    )
+    let [median, p99] = [tail.median, tail.p99].map(|ms| number(ms, 2));
+    format!("p50 {median} ms, p99 {p99} ms")
 }
 
 #[cfg(test)]

@@ -197,9 +197,8 @@ pub const MEASUREMENTS: [&str; 3] = [
 ];
 
 pub fn is_source(node: &Node) -> bool {
-    node.outputs
-        .iter()
-        .any(|o| MEASUREMENTS.contains(&o.as_str()))
+    let mut outputs = node.outputs.iter();
+    outputs.any(|output| MEASUREMENTS.contains(&output.as_str()))
 }
 
 /// True if every source is done, or every node. Takes a pair for each node: is a source, is done.
@@ -371,10 +370,8 @@ mod tests {
         assert_eq!(essential(&said("true")), Ok(true));
         assert_eq!(essential(&said("false")), Ok(false));
         let error = essential(&said("maybe")).unwrap_err();
-        assert!(
-            error.contains("node n: BACKCAST_ESSENTIAL is `maybe`"),
-            "{error}"
-        );
+        let expected = "node n: BACKCAST_ESSENTIAL is `maybe`";
+        assert!(error.contains(expected), "{error}");
     }
 
     #[test]

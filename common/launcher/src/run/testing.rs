@@ -8,8 +8,7 @@ use super::options::Options;
 pub(crate) fn parsed(text: &str) -> Dataflow {
     let topics = dataflow::Topics {
         names: messages::topic::NAMES,
-        shared: &[],
-        several: &[],
+        ..dataflow::Topics::default()
     };
     dataflow::parse(text, &topics).unwrap()
 }

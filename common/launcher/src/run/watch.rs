@@ -65,11 +65,8 @@ impl Watch {
         let mut newest = None;
         while let Some(scan) = self.scans.receive()? {
             let laser = scan.header().laser;
-            if self
-                .first_laser
-                .as_ref()
-                .is_none_or(|first| laser.as_str() == first)
-            {
+            let first = self.first_laser.as_ref();
+            if first.is_none_or(|first| laser.as_str() == first) {
                 newest = Some(scan);
             }
         }

@@ -96,7 +96,8 @@ pub(crate) fn run(config: &Config) -> anyhow::Result<ExitCode> {
     output::prepare(&config.out, config.force)?;
     let source = source(config, played)?;
     let text = descriptor_of(&source, map.as_ref());
-    write(&config.out, &text).with_context(|| not_written(&config.out))?;
+    let written = write(&config.out, &text);
+    written.with_context(|| format!("cannot write {}", config.out.display()))?;
     descriptor::load(&config.out, Builds::Run)?;
     stdout::print(&format!(
         "{file}: {source}\n\nbackcast check {file}\nbackcast run {file}\n",
@@ -211,10 +212,6 @@ fn used_recording((file, recording): (&Path, &Recording)) -> anyhow::Result<Stri
     }
 }
 
-fn not_written(file: &Path) -> String {
-    format!("cannot write {}", file.display())
-}
-
 fn used_map(file: &Path) -> anyhow::Result<String> {
     if file.extension() == Some(OsStr::new("mcap")) {
         return Err(wrong_use(format!(
@@ -252,9 +249,7 @@ mod tests {
         assert_eq!(mount("0,0,0").unwrap(), "0,0,0,0");
         assert!(mount("780,0,0").is_err());
         let error = mount("1,2").unwrap_err().to_string();
-        assert!(
-            error.starts_with("--mount \"1,2\": expected are three"),
-            "{error}"
-        );
+        let expected = "--mount \"1,2\": expected are three";
+        assert!(error.starts_with(expected), "{error}");
     }
 }

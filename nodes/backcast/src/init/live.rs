@@ -58,16 +58,10 @@ fn record_seen(seen: Robot, router: Option<&str>, length: Duration) -> anyhow::R
         bail!("none of its nodes publishes laser scans");
     }
     let folder = tempfile::tempdir()?;
-    let (descriptor, file) = (
-        folder.path().join("graph.yaml"),
-        folder.path().join("r.mcap"),
-    );
-    let connect = router.map(|router| ["--connect".to_owned(), router.to_owned()]);
-    let options = seen
-        .options
-        .into_iter()
-        .chain(connect.into_iter().flatten());
-    let args = options.collect::<Vec<_>>();
+    let [descriptor, file] = ["graph.yaml", "r.mcap"].map(|name| folder.path().join(name));
+    let connect = router.map(|router| ["--connect", router]);
+    let options = seen.options.iter().map(String::as_str);
+    let args = options.chain(connect.into_iter().flatten());
     let text = format!(
         "nodes:
   - id: ros2_gateway
@@ -79,14 +73,12 @@ fn record_seen(seen: Robot, router: Option<&str>, length: Duration) -> anyhow::R
     args: {recorder}
     inputs: {{scan: ros2_gateway/scan, odometry: ros2_gateway/odometry, map: ros2_gateway/map}}
 ",
-        gateway = quoted(&shlex::try_join(args.iter().map(String::as_str)).unwrap_or_default()),
+        gateway = quoted(&shlex::try_join(args).unwrap_or_default()),
         recorder = quoted(&format!("--output {}", file.display())),
     );
     std::fs::write(&descriptor, text)?;
-    say(&format!(
-        "recording the robot for {} s",
-        length.as_secs_f64()
-    ));
+    let seconds = length.as_secs_f64();
+    say(&format!("recording the robot for {seconds} s"));
     let name = GraphName::new(&format!("doctor_{}", std::process::id()))?;
     let mut graph = Command::new(std::env::current_exe()?)
         .arg("run")
@@ -137,11 +129,9 @@ fn wait_for_scan(name: &GraphName, launcher: &mut Child) -> Result<(), Transport
     let graph = Graph::join_named("doctor", name)?;
     let scans = graph.subscriber::<topic::Scan>()?;
     graph.run(&[&scans], TICK, |_| {
-        let is_enough = scans.newest()?.is_some() || is_over();
-        Ok(if is_enough {
-            Flow::Stop
-        } else {
-            Flow::Continue
+        Ok(match scans.newest()?.is_some() || is_over() {
+            true => Flow::Stop,
+            false => Flow::Continue,
         })
     })
 }

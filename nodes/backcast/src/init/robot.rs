@@ -78,34 +78,27 @@ fn robot_of(published: &[Published], lasers: Lasers) -> Robot {
     };
     // With several robots, the first one with scans is used.
     let Some(first) = published.iter().find(|one| one.kind == "scan") else {
-        robot.said.push(
-            "no node publishes laser scans on DDS or Zenoh: start the robot, and check \
-             ROS_DOMAIN_ID and the router"
-                .to_owned(),
-        );
+        let none = "no node publishes laser scans on DDS or Zenoh: start the robot, and check \
+                    ROS_DOMAIN_ID and the router";
+        robot.said.push(none.to_owned());
         return robot;
     };
     let (rmw, domain) = (&first.rmw, first.domain);
     let of_kind = |kind: &str| {
-        let all = published
-            .iter()
-            .filter(|one| one.rmw == *rmw && one.domain == domain);
-        let topics = all
-            .filter(|one| one.kind == kind)
-            .map(|one| one.topic.clone());
-        topics.collect::<BTreeSet<String>>()
+        let is_its = |one: &&Published| one.rmw == *rmw && one.domain == domain;
+        let all = published.iter().filter(is_its);
+        let all = all.filter(|one| one.kind == kind);
+        all.map(|one| one.topic.clone())
+            .collect::<BTreeSet<String>>()
     };
     robot.options.extend(["--rmw".to_owned(), rmw.clone()]);
     if domain != 0 {
-        robot
-            .options
-            .extend(["--domain".to_owned(), domain.to_string()]);
+        let domain = ["--domain".to_owned(), domain.to_string()];
+        robot.options.extend(domain);
     }
     let scans = of_kind("scan");
-    let maps: BTreeSet<String> = of_kind("map")
-        .into_iter()
-        .filter(|topic| !topic.contains("costmap"))
-        .collect();
+    let mut maps = of_kind("map");
+    maps.retain(|topic| !topic.contains("costmap"));
     robot.lacks_map = maps.is_empty();
     let odometry = of_kind("odometry");
     if lasers == Lasers::All {
@@ -131,10 +124,8 @@ fn robot_of(published: &[Published], lasers: Lasers) -> Robot {
         }
         if topics.len() > 1 {
             let all: Vec<&str> = topics.iter().map(String::as_str).collect();
-            let all = all.join(", ");
-            robot
-                .said
-                .push(format!("{option} {chosen} is taken of {all}"));
+            let taken = format!("{option} {chosen} is taken of {}", all.join(", "));
+            robot.said.push(taken);
         }
     }
     robot

@@ -191,13 +191,8 @@ impl Device {
         self.ask(Command::SubscribeScans(false), TIMEOUT, |telegram| {
             matches!(telegram, Telegram::Answer(_)).then_some(())
         })?;
-        let none = || {
-            (
-                vec!["no scan received: is the device measuring?".to_owned()],
-                Seen::default(),
-            )
-        };
-        Ok(found.unwrap_or_else(none))
+        let none = "no scan received: is the device measuring?".to_owned();
+        Ok(found.unwrap_or_else(|| (vec![none], Seen::default())))
     }
 }
 
@@ -293,16 +288,12 @@ mod tests {
             last_deg: 120.0,
         };
         let (looks, _, up) = in_which_way(&DeviceAngles::of_name(b"XY7"), around_zero);
-        assert!(
-            looks.contains("--device NAME") && looks.contains("--zero-deg"),
-            "{looks}"
-        );
+        let asks = looks.contains("--device NAME") && looks.contains("--zero-deg");
+        assert!(asks, "{looks}");
         assert_eq!(up, "the device's 90° is up");
         let (looks, convention, up) = in_which_way(&DeviceAngles::of_name(b"TiM240"), around_zero);
-        assert!(
-            looks.contains("0° is ahead") && looks.contains("TiM2xx"),
-            "{looks}"
-        );
+        let is_known = looks.contains("0° is ahead") && looks.contains("TiM2xx");
+        assert!(is_known, "{looks}");
         assert_eq!((convention.ahead_deg, up.as_str()), (0.0, "ahead is up"));
     }
 }

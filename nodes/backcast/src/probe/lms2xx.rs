@@ -43,11 +43,8 @@ pub(super) fn probe(path: &Path) -> anyhow::Result<(Vec<String>, Seen)> {
         Answer::Status(status) => Some(*status),
         _ => None,
     })?;
-    said.push(
-        status
-            .as_ref()
-            .map_or("status      no answer".to_owned(), in_words),
-    );
+    let none = "status      no answer".to_owned();
+    said.push(status.as_ref().map_or(none, in_words));
     let seen = status.and_then(|status| device.scan(&status).transpose());
     let seen = seen.transpose()?.unwrap_or_default();
     said.push(format!("a scan with {} returns", seen.points.len()));
@@ -132,13 +129,12 @@ fn seen(scan: &Scan<'_>, status: &DeviceStatus) -> Seen {
 }
 
 fn in_words(status: &DeviceStatus) -> String {
+    let state = match status.has_error {
+        true => "error",
+        false => "in order",
+    };
     format!(
-        "state       {}, version {}\nmeasures    {}° at {}°, {} turns a minute, unit {} m, {:?}",
-        if status.has_error {
-            "error"
-        } else {
-            "in order"
-        },
+        "state       {state}, version {}\nmeasures    {}° at {}°, {} turns a minute, unit {} m, {:?}",
         status.version.escape_ascii(),
         status.width_deg,
         f64::from(status.resolution_raw_1e2_deg) * 0.01,

@@ -255,28 +255,19 @@ mod tests {
             known.receive(serde_json::from_str(text).unwrap(), after(at));
             known.silence(after(at))
         };
-        assert_eq!(
-            receive(r#"{"type":"snapshot","ages":{}}"#, 0),
-            None,
-            "nothing came yet"
-        );
+        // Nothing came yet.
+        assert_eq!(receive(r#"{"type":"snapshot","ages":{}}"#, 0), None);
         // A viewer who connects a minute after the laser died gets this snapshot.
         let old = r#"{"type":"snapshot","ages":{"scan_s":61.5},"answer":{"verdict":"Unique"}}"#;
         assert_eq!(receive(old, 0).unwrap(), "no data for 61 s");
-        assert_eq!(receive(r#"{"type":"answer","age_ms":30.0}"#, 1), None);
+        let answer = r#"{"type":"answer","age_ms":30.0}"#;
+        assert_eq!(receive(answer, 1), None);
+        // Then only odometry comes.
         let odometry = r#"{"type":"pose","from_scan":false,"age_ms":9.0}"#;
         assert_eq!(receive(odometry, 2), None);
-        assert_eq!(
-            receive(odometry, 4).unwrap(),
-            "no data for 3 s",
-            "but odometry"
-        );
-        assert_eq!(receive(r#"{"type":"answer","age_ms":30.0}"#, 5), None);
-        let answer = r#"{"type":"answer","age_ms":30.0}"#;
-        assert_eq!(
-            receive(answer, 7).unwrap(),
-            "no pose for 3 s",
-            "the tracker ended"
-        );
+        assert_eq!(receive(odometry, 4).unwrap(), "no data for 3 s");
+        // The tracker ends.
+        assert_eq!(receive(answer, 5), None);
+        assert_eq!(receive(answer, 7).unwrap(), "no pose for 3 s");
     }
 }

@@ -120,6 +120,17 @@ impl Member {
         Err(source).with_context(|| not_started(&self.node, folder))
     }
 
+    /// Asks the process to end and notes what is wanted then; without one, `otherwise` follows now.
+    pub(super) fn ask_to_end(&mut self, wanted: Wanted, otherwise: State) -> anyhow::Result<()> {
+        let State::Running(process) = &self.state else {
+            self.state = otherwise;
+            return Ok(());
+        };
+        self.wanted = Some(wanted);
+        let asked = process.signal(Signal::SIGTERM);
+        asked.with_context(|| not_supervised(&self.node, process.pid()))
+    }
+
     /// Returns true if the process has ended, after deciding what follows.
     pub(super) fn look_after(&mut self, now: Instant, has_room: bool) -> anyhow::Result<bool> {
         let Some(status) = self.poll()? else {
@@ -200,16 +211,13 @@ impl Member {
             State::Done => ("ended", None),
         };
         let up = self.started.filter(|_| pid.is_some());
+        let reported = self.pulse.age(now).filter(|_| pid.is_some());
         NodeStatus {
             id: self.node.id.clone(),
             state: state.to_owned(),
             pid,
             uptime_s: up.map(|started| (now - started).as_secs()),
-            reported_s: self
-                .pulse
-                .age(now)
-                .filter(|_| pid.is_some())
-                .map(|age| age.as_secs()),
+            reported_s: reported.map(|age| age.as_secs()),
             restarts: self.restarted,
             last_end: self.last_end.map(|status| status.to_string()),
             fails: self.fails(now),
@@ -236,9 +244,8 @@ impl Member {
             return Ok(None);
         };
         let pid = process.pid();
-        process
-            .poll()
-            .with_context(|| not_supervised(&self.node, pid))
+        let ended = process.poll();
+        ended.with_context(|| not_supervised(&self.node, pid))
     }
 }
 

@@ -48,10 +48,8 @@ fn a_recording_is_played_on_its_own_map_unless_another_is_given() {
         // Which of several recordings has the map of all is not known.
         ("--replay /a.mcap --replay /b.mcap", &[]),
     ] {
-        assert_eq!(
-            map_args(&options(line)),
-            [&["--beams", "9"], expected].concat()
-        );
+        let expected = [&["--beams", "9"], expected].concat();
+        assert_eq!(map_args(&options(line)), expected, "{line}");
     }
 }
 
@@ -83,10 +81,8 @@ fn the_true_heading_has_no_offset() {
     assert_eq!(args[1], ["--beams", "9", "--heading-from=truth"]);
     options.heading.heading_offset = Some(1.0);
     let error = applied(&options, wired()).unwrap_err();
-    assert_eq!(
-        error.to_string(),
-        "--heading-offset needs --heading-from odometry"
-    );
+    let expected = "--heading-offset needs --heading-from odometry";
+    assert_eq!(error.to_string(), expected);
 }
 
 #[test]
