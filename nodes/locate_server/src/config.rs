@@ -129,16 +129,11 @@ mod tests {
     #[test]
     fn only_the_maps_that_are_named_are_held() {
         let held = |on: &str| {
-            parse(&format!("--map b/y.yaml --map c/z.yaml --on {on}"))
-                .unwrap()
-                .files()
+            let config = parse(&format!("--map b/y.yaml --map c/z.yaml --on {on}"));
+            config.unwrap().files()
         };
-        let names: Vec<String> = held("z,y")
-            .unwrap()
-            .into_iter()
-            .map(|map| map.name)
-            .collect();
-        assert_eq!(names, ["y", "z"]);
+        let names = held("z,y").unwrap().into_iter().map(|map| map.name);
+        assert_eq!(names.collect::<Vec<_>>(), ["y", "z"]);
         let error = held("x").unwrap_err().to_string();
         assert!(error.contains("y, z"), "{error}");
     }

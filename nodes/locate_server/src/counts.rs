@@ -25,10 +25,9 @@ impl Counts {
 
     /// Counts an answer as sent, or as dropped if the client no longer waits.
     pub(crate) fn sent(&self, outcome: &ZenohResult<()>) {
-        let counter = if outcome.is_ok() {
-            &self.sent
-        } else {
-            &self.busy
+        let counter = match outcome {
+            Ok(()) => &self.sent,
+            Err(_) => &self.busy,
         };
         counter.fetch_add(1, Ordering::Relaxed);
     }

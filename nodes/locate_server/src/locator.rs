@@ -54,15 +54,6 @@ impl SearchedMap {
 }
 
 impl Locator {
-    pub fn new(
-        map: &OccupancyGrid,
-        rules: CellRules,
-        settings: Settings,
-    ) -> Result<Self, EngineError> {
-        let map = SearchedMap::new(String::new(), map, rules, settings)?;
-        Locator::of_set(vec![map])
-    }
-
     pub fn of_set(maps: Vec<SearchedMap>) -> Result<Self, EngineError> {
         let (ids, prepared) = maps
             .into_iter()

@@ -104,10 +104,9 @@ impl Service {
         let load = (workers, waiting);
         let (dispatcher, work_queue) =
             Dispatcher::new(session, &key, load, config.deadline, counts);
-        let work_queue = Arc::new(work_queue);
+        let shared = (Arc::new(work_queue), locator.clone(), counts.clone());
         for _ in 0..workers {
-            let (work_queue, locator, counts) =
-                (work_queue.clone(), locator.clone(), counts.clone());
+            let (work_queue, locator, counts) = shared.clone();
             // The threads end when the dispatcher is closed, or with the process.
             std::thread::spawn(move || worker::work(&work_queue, &locator, &counts));
         }
@@ -259,14 +258,7 @@ mod tests {
         };
         let key = "backcast/locate/office/a1/00000000000000ff/1f/4";
         assert_eq!(Other::of(key), Some(expected));
-        for key in [
-            "",
-            "a1",
-            "x/a1/ff/1/0",
-            "x/a1/ff/1/257",
-            "x/a1/xx/1/1",
-            "x/a1/ff/1/-1",
-        ] {
+        for key in ", a1, x/a1/ff/1/0, x/a1/ff/1/257, x/a1/xx/1/1, x/a1/ff/1/-1".split(", ") {
             assert_eq!(Other::of(key), None, "{key}");
         }
     }

@@ -9,7 +9,9 @@ use std::thread::ScopedJoinHandle;
 use std::time::Duration;
 
 use crossbeam::channel::{Receiver, unbounded};
-use locate_server::{BUSY, JSON, JSON_ANSWER, LATE, LocateError, Locator, REFUSED, Workspace, ask};
+use locate_server::{
+    BUSY, JSON, JSON_ANSWER, LATE, LocateError, Locator, REFUSED, SearchedMap, Workspace, ask,
+};
 use messages::{ScanHeader, topic};
 use network_payload::Preamble;
 use tests::world::{World, as_the_graph_has_it};
@@ -17,7 +19,7 @@ use transport::Graph;
 use transport::testing::{Isolated, NodeProcess, wait_for_health, wait_until, wait_until_ready};
 use zenoh::bytes::Encoding;
 use zenoh::handlers::FifoChannelHandler;
-use zenoh::query::{ConsolidationMode, Query, QueryTarget, Queryable, Reply};
+use zenoh::query::{ConsolidationMode, Query, QueryTarget, Queryable, Reply, ReplyError};
 use zenoh::{Session, Wait};
 
 /// Longer than any answer takes on any machine.
@@ -111,6 +113,19 @@ fn ask_raw(session: &Session, parameters: &str, encoding: &str, payload: Vec<u8>
     replies.remove(0)
 }
 
+fn searched(name: &str, map: &map::OccupancyGrid) -> SearchedMap {
+    let (rules, settings) = (Default::default(), Default::default());
+    SearchedMap::new(name.to_owned(), map, rules, settings).unwrap()
+}
+
+/// Asserts that a request failed with this encoding; returns the reason.
+#[track_caller]
+fn failed_as(reply: Reply, encoding: &str) -> ReplyError {
+    let error = reply.into_result().unwrap_err();
+    assert_eq!(error.encoding().to_string(), encoding);
+    error
+}
+
 fn json_of((header, ranges): &Scan) -> Vec<u8> {
     let ranges: Vec<_> = ranges.iter().map(|r| r.is_finite().then_some(r)).collect();
     let value = serde_json::json!({
@@ -139,7 +154,7 @@ fn answers_are_those_of_the_engine() {
     let server = Server::start("answers", &[]);
     let session = caller(&[&server]);
     let map = map::load(world().map()).unwrap();
-    let locator = Locator::new(&map, Default::default(), Default::default()).unwrap();
+    let locator = Locator::of_set(vec![searched("", &map)]).unwrap();
     let mut workspace = Workspace::default();
     for scan in scans() {
         let asked = (&scan.0, scan.1.as_slice());
@@ -175,32 +190,25 @@ fn what_is_no_request_is_refused_and_counted() {
     let postcard = network_payload::encoding::<topic::Scan>();
     let mut cut = sound.clone();
     cut.pop();
+    let still = br#"{"angle_min":0,"angle_increment":0,"range_max":9,"ranges":[1]}"#;
     let wrong = [
         ("", "zenoh/bytes", sound.clone()),
         ("", postcard.as_str(), cut),
         ("", postcard.as_str(), vec![0xff; 2 << 20]),
         ("", JSON, b"{}".to_vec()),
-        (
-            "",
-            JSON,
-            br#"{"angle_min":0,"angle_increment":0,"range_max":9,"ranges":[1]}"#.to_vec(),
-        ),
+        ("", JSON, still.to_vec()),
         ("?deadline_ms=soon", postcard.as_str(), sound.clone()),
     ];
     let count = wrong.len() as u64;
     for (parameters, encoding, payload) in wrong {
         let reply = ask_raw(&session, parameters, encoding, payload);
-        let error = reply.into_result().unwrap_err();
-        assert_eq!(error.encoding().to_string(), REFUSED);
-        assert!(!error.payload().is_empty());
+        assert!(!failed_as(reply, REFUSED).payload().is_empty());
     }
     // What comes with a request waits with it, and counts.
     let get = session.get("backcast/locate/corridor");
     let get = get.payload(sound.clone()).encoding(postcard.as_str());
     let replies = get.attachment(vec![0; 2 << 20]).timeout(TIMEOUT).wait();
-    let reply = replies.unwrap().recv().unwrap();
-    let error = reply.into_result().unwrap_err();
-    assert_eq!(error.encoding().to_string(), REFUSED);
+    failed_as(replies.unwrap().recv().unwrap(), REFUSED);
     let health = server.graph.subscriber::<topic::Health>().unwrap();
     wait_for_health(&server.graph, &health, |report| report.refused == count + 1);
     // The client does not repeat such a request either, since that would not help.
@@ -220,9 +228,7 @@ fn what_cannot_be_answered_in_time_is_not_searched() {
     let session = caller(&[&server]);
     // A search takes many times longer.
     let payload = json_of(&scans()[0]);
-    let reply = ask_raw(&session, "?deadline_ms=1", JSON, payload);
-    let error = reply.into_result().unwrap_err();
-    assert_eq!(error.encoding().to_string(), LATE);
+    failed_as(ask_raw(&session, "?deadline_ms=1", JSON, payload), LATE);
     server.process.stop();
 }
 
@@ -236,12 +242,12 @@ fn beyond_its_queue_a_server_is_busy() {
     while answers == 0 || busy == 0 {
         let asking: Vec<_> = (0..20).map(|_| ask_json(&session, scan)).collect();
         for replies in asking {
-            match replies.recv().unwrap().into_result() {
-                Ok(_) => answers += 1,
-                Err(error) => {
-                    assert_eq!(error.encoding().to_string(), BUSY);
-                    busy += 1;
-                }
+            let reply = replies.recv().unwrap();
+            if reply.result().is_ok() {
+                answers += 1;
+            } else {
+                failed_as(reply, BUSY);
+                busy += 1;
             }
         }
     }

@@ -1,7 +1,5 @@
 //! Tests of several maps on one server.
 
-use locate_server::SearchedMap;
-
 use super::*;
 
 /// Shipped maps, in the order of the set.
@@ -19,16 +17,8 @@ fn a_server_of_several_maps_answers_as_one_search_of_all_of_them() {
     let set = folder.path().to_str().unwrap();
     let server = Server::of("set", &["--maps", set, "--name", "malaga"]);
     let session = caller(&[&server]);
-    let maps = MAPS.map(|name| {
-        let map = map::load(World::of(name).map()).unwrap();
-        SearchedMap::new(
-            name.to_owned(),
-            &map,
-            Default::default(),
-            Default::default(),
-        )
-        .unwrap()
-    });
+    let map = |name| map::load(World::of(name).map()).unwrap();
+    let maps = MAPS.map(|name| searched(name, &map(name)));
     let (locator, mut workspace) = (Locator::of_set(maps.into()).unwrap(), Workspace::default());
     let mut on_the_right_map = 0;
     let scans = World::of("malaga_corridor").scans();
