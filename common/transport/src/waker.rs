@@ -6,13 +6,9 @@ use std::sync::Arc;
 
 /// Wakes the event loop of its graph; may be sent to any thread.
 #[derive(Debug, Clone)]
-pub struct Waker(Arc<UnixStream>);
+pub struct Waker(pub(crate) Arc<UnixStream>);
 
 impl Waker {
-    pub(crate) fn new(end: UnixStream) -> Self {
-        Waker(Arc::new(end))
-    }
-
     /// Makes [`crate::Graph::run`] call its step once more, at once or after the current one.
     pub fn wake(&self) {
         // If the socket is full, wake-ups are pending already; if closed, there is no loop.
@@ -39,12 +35,10 @@ mod tests {
         let outcome = graph.run(&[], day, |wake| {
             steps += 1;
             assert_eq!(wake.tick, steps == 1);
-            let flow = if steps == 2 {
-                Flow::Stop
-            } else {
-                Flow::Continue
-            };
-            Ok::<_, TransportError>(flow)
+            Ok::<_, TransportError>(match steps {
+                2 => Flow::Stop,
+                _ => Flow::Continue,
+            })
         });
         outcome.unwrap();
         thread.join().unwrap();

@@ -138,10 +138,8 @@ fn health_is_sent_at_once_when_it_changes_and_when_the_node_ends() {
     // The last character would end one byte behind the limit.
     let long = format!("{}ä and more", "a".repeat(HealthHeader::ERROR_CAPACITY - 1));
     health.error(&long).unwrap();
-    assert_eq!(
-        report().unwrap().1,
-        "a".repeat(HealthHeader::ERROR_CAPACITY - 1)
-    );
+    let cut = "a".repeat(HealthHeader::ERROR_CAPACITY - 1);
+    assert_eq!(report().unwrap().1, cut);
     health.error("scan refused").unwrap();
     assert_eq!(report().unwrap().1, "scan refused");
 
@@ -158,26 +156,21 @@ fn the_event_loop_ends_when_asked() {
     let tick = Duration::from_millis(1);
 
     let mut calls = 0;
-    graph
-        .run(&[], tick, |wake| {
-            assert!(wake.tick, "without inputs, only ticks wake");
-            calls += 1;
-            Ok::<_, TransportError>(if calls == 3 {
-                Flow::Stop
-            } else {
-                Flow::Continue
-            })
+    let outcome = graph.run(&[], tick, |wake| {
+        assert!(wake.tick, "without inputs, only ticks wake");
+        calls += 1;
+        Ok::<_, TransportError>(match calls {
+            3 => Flow::Stop,
+            _ => Flow::Continue,
         })
-        .unwrap();
+    });
+    outcome.unwrap();
     assert_eq!(calls, 3);
 
-    let error = graph
-        .run(&[], tick, |_| {
-            Err(TransportError::GraphName {
-                name: "mine".into(),
-            })
-        })
-        .unwrap_err();
+    let name = "mine".to_owned();
+    let mut error = Some(TransportError::GraphName { name });
+    let outcome = graph.run(&[], tick, |_| Err(error.take().unwrap()));
+    let error = outcome.unwrap_err();
     assert!(matches!(error, TransportError::GraphName { name } if name == "mine"));
 
     let flag = graph.stop_flag();

@@ -69,9 +69,7 @@ fn a_late_joiner_gets_the_latched_map_while_the_publisher_is_idle() {
         assert_eq!(sample.header().map_id, 7);
         assert_eq!(sample.items(), [7; 100]);
     }
-    publisher.signal(Signal::SIGTERM);
-    assert_eq!(publisher.answer(), "stopped");
-    publisher.end();
+    publisher.stop(Signal::SIGTERM);
 }
 
 #[test]
@@ -81,9 +79,7 @@ fn signals_end_the_wait_at_once() {
         let mut idle = Member::start(isolated.name(), "idle");
         // With a tick of a day, only the signal can end the wait.
         assert_eq!(idle.ask("idle 86400000"), "idle");
-        idle.signal(signal);
-        assert_eq!(idle.answer(), "stopped");
-        idle.end();
+        idle.stop(signal);
     }
 }
 
@@ -134,9 +130,7 @@ fn a_killed_subscriber_can_be_replaced_while_the_publisher_goes_on() {
         assert!(subscriber.ask("receive").starts_with("7 "));
         subscriber.kill();
     }
-    publisher.signal(Signal::SIGTERM);
-    assert_eq!(publisher.answer(), "stopped");
-    publisher.end();
+    publisher.stop(Signal::SIGTERM);
 }
 
 #[test]

@@ -122,10 +122,8 @@ fn impossible_sizes_are_refused() {
     let graph = isolated.join("tester");
     let publisher = graph.publisher::<topic::Scan>().unwrap();
     let error = publisher.loan(usize::MAX / 2).unwrap_err();
-    assert!(matches!(
-        error,
-        TransportError::TooLarge { item_bytes: 4, .. }
-    ));
+    let is_too_large = matches!(error, TransportError::TooLarge { item_bytes: 4, .. });
+    assert!(is_too_large, "{error}");
     // More than any machine's memory, yet a size that arithmetic can hold.
     let error = publisher.loan(1 << 50).unwrap_err();
     assert!(
@@ -152,10 +150,8 @@ fn another_version_of_a_message_is_refused_by_name() {
     let _map = graph.publisher::<topic::Map>().unwrap();
     let error = graph.subscriber::<OtherMap>().unwrap_err();
     let text = error.to_string();
-    assert!(matches!(
-        error,
-        TransportError::TypeMismatch { topic: "map", .. }
-    ));
+    let is_meant = matches!(error, TransportError::TypeMismatch { topic: "map", .. });
+    assert!(is_meant, "{text}");
     // Both names have a version number and a size.
     for (whose, header, size) in [
         ("carries", "MapHeader", size_of::<MapHeader>()),

@@ -64,8 +64,11 @@ impl Member {
         self.process.id()
     }
 
-    pub(crate) fn signal(&self, signal: Signal) {
-        kill(Pid::from_raw(self.process.id().cast_signed()), signal).unwrap();
+    /// Ends the wait of an idle member by a signal, and then the member.
+    pub(crate) fn stop(mut self, signal: Signal) {
+        kill(Pid::from_raw(self.id().cast_signed()), signal).unwrap();
+        assert_eq!(self.answer(), "stopped");
+        self.end();
     }
 
     pub(crate) fn kill(mut self) {
