@@ -68,15 +68,15 @@ fn of_a_set_all_maps_are_served_and_the_one_that_poses_name_is_shown() {
         hall = set.maps[1].0.map_id;
         true
     });
-    world.wait(&shown, |map, _| {
-        assert_eq!(map.name.as_str(), "yard");
-        true
-    });
+    let wait_for_shown = |name: &str, expected: &[u8]| {
+        world.wait(&shown, |map, cells| {
+            assert_eq!((map.name.as_str(), cells), (name, expected));
+            true
+        });
+    };
+    wait_for_shown("yard", &[0, 100]);
     send(&poses, hall, TrackState::Unique, 1);
-    world.wait(&shown, |map, cells| {
-        assert_eq!((map.name.as_str(), cells), ("hall", &[100, 0, 255][..]));
-        true
-    });
+    wait_for_shown("hall", &[100, 0, 255]);
 
     // The set is served again when one of its maps changes; the displayed map stays.
     world.replace("map.pgm", &image(&[0, 0, 205]));
@@ -85,10 +85,7 @@ fn of_a_set_all_maps_are_served_and_the_one_that_poses_name_is_shown() {
         assert_eq!(set.maps[1].1, [100, 100, 255]);
         true
     });
-    world.wait(&shown, |map, cells| {
-        assert_eq!((map.name.as_str(), cells), ("hall", &[100, 100, 255][..]));
-        true
-    });
+    wait_for_shown("hall", &[100, 100, 255]);
     // A broken list changes nothing.
     world.replace("maps.yaml", b"maps: []");
     let (_, error) = world.wait_for_state(&health, NodeState::Degraded);
