@@ -20,7 +20,7 @@ use nix::unistd::{Pid, mkfifo};
 use tempfile::TempDir;
 use tests::needs::Need;
 use tests::{assert_ends, said_by};
-use transport::testing::{wait_for_health, wait_until};
+use transport::testing::wait_until;
 use transport::{Graph, GraphName};
 
 fn graph(nodes: &[&str]) -> TempDir {

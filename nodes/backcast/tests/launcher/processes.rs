@@ -45,6 +45,17 @@ fn a_node_that_fails_for_good_ends_the_run_and_is_named() {
     assert!(!stdout.contains("scans"), "{stdout}");
 }
 
+/// Waits until the launcher of a graph reports that it is degraded, for a reason with this part.
+fn wait_until_degraded(graph: &str, reason: &str) {
+    let member = Graph::join_named("tester", &GraphName::new(graph).unwrap()).unwrap();
+    let health = member.subscriber::<topic::Health>().unwrap();
+    wait_until(&member, &health, |report, error| {
+        report.node.as_str() == "backcast"
+            && report.state == NodeState::Degraded as u32
+            && String::from_utf8_lossy(error).contains(reason)
+    });
+}
+
 #[test]
 fn a_node_that_fails_each_time_is_shown_with_its_reason() {
     let name = "test-fails";
@@ -56,16 +67,8 @@ fn a_node_that_fails_each_time_is_shown_with_its_reason() {
     let mut running = Running::start(&folder, &["--graph", name]);
     let shown = "loops ended 3 times in a row, last with exit status: 7: it broke";
     while running.receive("backcast") != shown {}
-    let member = Graph::join_named("tester", &GraphName::new(name).unwrap()).unwrap();
-    let health = member.subscriber::<topic::Health>().unwrap();
-    wait_until(&member, &health, |report, error| {
-        report.node.as_str() == "backcast"
-            && report.state == NodeState::Degraded as u32
-            && String::from_utf8_lossy(error).contains("times in a row, last with exit status: 7")
-    });
-    drop((health, member));
-    let mut status = launcher(folder.path(), &["status", "--graph", name]);
-    let status = String::from_utf8(status.output().unwrap().stdout).unwrap();
+    wait_until_degraded(name, "times in a row, last with exit status: 7");
+    let (_, status, _) = said_by(&mut launcher(folder.path(), &["status", "--graph", name]));
     assert!(status.contains("\n  loops ended "), "{status}");
     running.signal(Signal::SIGTERM);
     running.end_well();
@@ -86,12 +89,7 @@ fn a_node_that_only_shows_fails_for_good_and_the_rest_goes_on() {
     while running.receive("backcast") != goes_on {}
 
     // Processes that ask later receive the state as well.
-    let member = Graph::join_named("tester", &GraphName::new(name).unwrap()).unwrap();
-    let health = member.subscriber::<topic::Health>().unwrap();
-    wait_for_health(&member, &health, |report| {
-        report.node.as_str() == "backcast" && report.state == NodeState::Degraded as u32
-    });
-    drop((health, member));
+    wait_until_degraded(name, "the graph continues without shown");
 
     let_go(&folder);
     running.end_well();

@@ -5,6 +5,7 @@ use std::fs;
 use recording::Message;
 use ros::{LaserScan, OccupancyGridMsg};
 use serde_json::Value;
+use tests::assert_ends;
 
 use crate::drawn::{
     HERE, THERE, assert_refused, folder, framed_map, map_message, mount_message, output, parsed,
@@ -23,8 +24,19 @@ fn known_rows(rows: usize) -> (&'static str, Message) {
 
 fn verdicts(folder: &std::path::Path, arguments: &str) -> (i32, Vec<String>, String) {
     let (code, stdout, stderr) = run(folder, &format!("locate --json {arguments}"));
+    (code, verdicts_in(&stdout), stderr)
+}
+
+fn verdicts_in(stdout: &str) -> Vec<String> {
     let verdict = |object: &Value| object["verdict"].as_str().unwrap().to_owned();
-    (code, parsed(&stdout).iter().map(verdict).collect(), stderr)
+    parsed(stdout).iter().map(verdict).collect()
+}
+
+/// Asserts that nothing is remarked, and the verdicts.
+#[track_caller]
+fn assert_verdicts(folder: &std::path::Path, arguments: &str, expected: &[&str]) {
+    let stdout = output(folder, &format!("locate --json {arguments}"));
+    assert_eq!(verdicts_in(&stdout), expected, "{arguments}");
 }
 
 #[test]
@@ -55,9 +67,7 @@ fn the_newest_map_before_a_scan_counts() {
 #[test]
 fn a_map_that_is_recorded_behind_all_scans_counts_for_them() {
     let folder = folder(&[scan_at(1, HERE), scan_at(2, THERE), map_message()]);
-    let (code, found, stderr) = verdicts(folder.path(), "r.mcap");
-    assert_eq!((code, stderr.as_str()), (0, ""));
-    assert_eq!(found, ["Unique", "Unique"]);
+    assert_verdicts(folder.path(), "r.mcap", &["Unique", "Unique"]);
 }
 
 #[test]
@@ -95,9 +105,7 @@ fn the_topic_is_named_where_several_could_be_meant() {
     ]);
     for (topic, scans) in [("/front/scan", 2), ("/rear/scan", 1)] {
         let arguments = format!("r.mcap --scan-topic {topic}");
-        let (code, found, stderr) = verdicts(folder.path(), &arguments);
-        assert_eq!((code, stderr.as_str()), (0, ""), "{topic}");
-        assert_eq!(found, vec!["Unique"; scans], "{topic}");
+        assert_verdicts(folder.path(), &arguments, &vec!["Unique"; scans]);
     }
     let several = "/front/scan, /rear/scan, and none is called /scan: name one with --scan-topic\n";
     let wrong = "has no sensor_msgs/msg/LaserScan on /scan; it has /front/scan, /rear/scan\n";
@@ -107,7 +115,8 @@ fn the_topic_is_named_where_several_could_be_meant() {
         ("--scan-topic /scan", wrong),
         ("--scan-topic /rear/scan --scan-topic /front/scan", unknown),
     ] {
-        assert_refused(folder.path(), &format!("locate r.mcap {options}"), 1, said);
+        let located = run(folder.path(), &format!("locate r.mcap {options}"));
+        assert_ends(located, 1, said);
     }
     let info = output(folder.path(), "info r.mcap --scan-topic /rear/scan");
     assert!(info.contains("taken: map /map, scans /rear/scan"), "{info}");
@@ -120,10 +129,9 @@ fn a_map_and_a_recording_that_are_swapped_are_reported() {
     let folder = folder(&[map_message(), scan_at(1, HERE)]);
     map::save(&room(), folder.path().join("room.yaml")).unwrap();
     for bag in ["--bag room.yaml", "room.yaml"] {
-        let (code, _, stderr) = verdicts(folder.path(), &format!("{bag} --map r.mcap"));
-        let said =
-            "backcast: room.yaml is a map, and --map r.mcap a recording: the two look swapped\n";
-        assert_eq!((code, stderr.as_str()), (2, said));
+        let arguments = format!("locate --json {bag} --map r.mcap");
+        let swapped = "room.yaml is a map, and --map r.mcap a recording: the two look swapped\n";
+        assert_refused(folder.path(), &arguments, 2, swapped);
     }
     for files in [
         "--bag r.mcap --map room.yaml",
@@ -147,9 +155,7 @@ fn a_folder_stands_wherever_a_recording_does() {
     record(&bag.join("drive_1.mcap"), &second);
     let both = "drive/drive_0.mcap drive/drive_1.mcap";
     for files in ["drive", "--bag drive", both] {
-        let (code, found, stderr) = verdicts(folder.path(), files);
-        assert_eq!((code, stderr.as_str()), (0, ""), "{files}");
-        assert_eq!(found, ["Unique", "Unique"], "{files}");
+        assert_verdicts(folder.path(), files, &["Unique", "Unique"]);
     }
     let figures = &parsed(&output(folder.path(), "evaluate --json drive"))[0];
     assert_eq!(figures["truths"], 2);
@@ -160,8 +166,7 @@ fn a_folder_stands_wherever_a_recording_does() {
     output(folder.path(), "plot --bag drive --out scan.png");
     let (code, _, stderr) = run(folder.path(), "convert drive drive.mcap");
     assert_eq!(code, 0, "{stderr}");
-    let (_, found, _) = verdicts(folder.path(), "drive.mcap");
-    assert_eq!(found, ["Unique", "Unique"]);
+    assert_verdicts(folder.path(), "drive.mcap", &["Unique", "Unique"]);
     let corridor = recordings().join("malaga_corridor/map.yaml");
     let map = format!("drive --map {}", corridor.display());
     let (code, found, _) = verdicts(folder.path(), &map);
