@@ -11,9 +11,6 @@ pub const MAX_NAME_BYTES: usize = 64;
 const LOCATE: &str = "locate";
 
 /// Checks a name that is used in keys, where `/`, `*`, `$`, `?`, `#` and `@` have special meanings.
-///
-/// # Errors
-/// [`WireError::Name`] if it is empty, too long, or has an invalid character.
 pub fn name(text: &str) -> Result<String, WireError> {
     let is_plain = |c: char| c.is_ascii_alphanumeric() || "-_.".contains(c);
     if (1..=MAX_NAME_BYTES).contains(&text.len()) && text.chars().all(is_plain) {
@@ -24,9 +21,6 @@ pub fn name(text: &str) -> Result<String, WireError> {
 }
 
 /// Checks the name of a robot.
-///
-/// # Errors
-/// See [`name`]; also [`WireError::Taken`] if the name is reserved.
 pub fn robot(text: &str) -> Result<String, WireError> {
     if text == LOCATE {
         let found = text.to_owned();
@@ -37,27 +31,23 @@ pub fn robot(text: &str) -> Result<String, WireError> {
 
 /// Returns the name of the robot of a process: the given one, or the host name if it is valid in
 /// keys, or `robot`.
-#[must_use]
 pub fn robot_or_host(given: Option<&str>, host: &str) -> String {
     let host = || robot(host).unwrap_or_else(|_| "robot".to_owned());
     given.map_or_else(host, str::to_owned)
 }
 
 /// Returns the key of location requests on a map: `backcast/locate/<map>`.
-#[must_use]
 pub fn locate(map: &str) -> String {
     format!("backcast/{LOCATE}/{map}")
 }
 
 /// Returns the key of a robot's topic: `backcast/<robot>/<topic>`.
-#[must_use]
 pub fn key<T: Wire>(robot: &str) -> String {
     format!("backcast/{robot}/{}", T::NAME)
 }
 
 /// Returns the key of the liveliness token of a process of the robot,
 /// `backcast/<robot>/alive/<session>`, with `/<node>` appended for that of a node.
-#[must_use]
 pub fn alive(robot: &str, session: &str, node: Option<&str>) -> String {
     let session = format!("backcast/{robot}/alive/{session}");
     node.map_or_else(|| session.clone(), |node| format!("{session}/{node}"))

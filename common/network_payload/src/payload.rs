@@ -46,7 +46,6 @@ impl<T: Wire> Received<T> {
     }
 }
 
-#[must_use]
 pub fn encoding<T: Wire>() -> String {
     let packed = if T::COMPRESSED { "+zstd" } else { "" };
     format!("application/postcard{packed};backcast.{}", T::SCHEMA)
@@ -74,10 +73,6 @@ pub fn encode<T: Wire>(
 }
 
 /// Decodes a payload whose given encoding is `found`.
-///
-/// # Errors
-/// The payload has another schema, is too long or damaged, or has values that are invalid on this
-/// topic; see [`WireError`].
 pub fn decode<T: Wire>(found: &str, payload: &[u8]) -> Result<Received<T>, WireError> {
     let expected = encoding::<T>();
     if found != expected {

@@ -27,9 +27,6 @@ pub trait Wire:
     const ON_DEMAND: bool = false;
 
     /// Checks for contradictions and invalid numbers.
-    ///
-    /// # Errors
-    /// [`WireError::Field`] with the field and its allowed values.
     fn check(header: &Self::Header, items: &[Self::Item]) -> Result<(), WireError>;
 
     /// Calls `change` for each time of the sender's monotonic clock in the header.

@@ -29,9 +29,6 @@ pub trait Protocol {
     }
 
     /// Parses the content of a telegram that was judged valid.
-    ///
-    /// # Errors
-    /// If the content cannot be parsed.
     fn read<'a>(&self, content: &'a [u8]) -> Result<Self::Telegram<'a>, SickError>;
 }
 
@@ -94,7 +91,6 @@ pub struct Framer<P> {
 
 impl<P: Protocol> Framer<P> {
     /// Creates a framer at the start of a stream.
-    #[must_use]
     pub fn of(protocol: P) -> Self {
         Framer {
             protocol,
@@ -121,9 +117,9 @@ impl<P: Protocol> Framer<P> {
 
     /// Returns the next telegram or the next error; `None` until more bytes arrive.
     ///
-    /// # Errors
-    /// The first reason for losing synchronization, and each wrong checksum or unreadable content.
-    /// After that, bytes are skipped silently up to the next telegram, which reports their number.
+    /// Errors are the first reason for losing synchronization, and each wrong checksum or unreadable
+    /// content. After that, bytes are skipped silently up to the next telegram, which reports their
+    /// number.
     pub fn next_frame(&mut self) -> Option<Result<Frame<'_, P::Telegram<'_>>, SickError>> {
         loop {
             match self.judge(self.at) {

@@ -21,7 +21,6 @@ pub const ENVELOPE_BYTES: usize = 4096;
 
 /// Returns the size of a message in bytes. Its payload is only a part of what its sender chooses,
 /// and of what is kept while it waits.
-#[must_use]
 pub fn message_bytes(encoding: Option<&Encoding>, parts: [Option<&ZBytes>; 2]) -> usize {
     let parts = parts.into_iter().flatten().map(ZBytes::len);
     let encoding = encoding.map_or(0, |encoding| Cow::from(encoding).len());
@@ -46,7 +45,6 @@ pub struct QueueLimits {
 
 impl QueueLimits {
     /// Returns limits for this many messages of the largest size.
-    #[must_use]
     pub fn for_any(messages: usize, message_bytes: usize) -> Self {
         QueueLimits {
             messages,
@@ -132,27 +130,23 @@ impl Queue {
     }
 
     /// Returns the oldest waiting message.
-    #[must_use]
     pub fn next(&self) -> Option<Sample> {
         self.waiting.take()
     }
 
     /// Returns the limits. An event loop that takes at most `messages` at once does not starve its
     /// other inputs, however fast messages come.
-    #[must_use]
     pub fn limits(&self) -> QueueLimits {
         self.waiting.limits
     }
 
     /// Returns the number of messages lost since the last call because the queue was full.
-    #[must_use]
     pub fn dropped(&self) -> u64 {
         self.waiting.dropped.swap(0, Ordering::Relaxed)
     }
 
     /// Returns the size in bytes of a message above the size limit, once for each; if there were
     /// several, the size of the last one.
-    #[must_use]
     pub fn next_too_long(&self) -> Option<usize> {
         let take = |count: u64| count.checked_sub(1);
         let (order, counter) = (Ordering::Relaxed, &self.waiting.too_long);

@@ -27,7 +27,6 @@ pub struct Report {
 }
 
 impl Report {
-    #[must_use]
     pub fn new(health: Health) -> Self {
         Report {
             health,

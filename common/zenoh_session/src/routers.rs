@@ -21,7 +21,6 @@ impl Routers {
     }
 
     /// Returns a text on the missing routers before the session is open; empty without endpoints.
-    #[must_use]
     pub fn awaited(&self) -> String {
         match &self.endpoints[..] {
             [] => String::new(),
@@ -31,7 +30,6 @@ impl Routers {
 
     /// Returns a text on the missing routers; empty if the session has a connection or no
     /// endpoints.
-    #[must_use]
     pub fn missing(&self, session: &Session) -> String {
         let is_connected = || session.info().transports().wait().next().is_some();
         match self.endpoints.is_empty() || is_connected() {

@@ -51,10 +51,6 @@ const DEFAULTS: [(&str, &str); 7] = [
 
 /// Opens the session, however long that takes: as a client, Zenoh waits until it is connected.
 /// Meanwhile `tick` is called regularly. Returns `None` if the process is stopped before.
-///
-/// # Errors
-/// The file or an option cannot be used, Zenoh cannot listen at a configured endpoint, or `tick`
-/// fails.
 pub fn open(
     graph: &Graph,
     options: &Options,

@@ -18,10 +18,6 @@ pub struct Ports {
 
 impl Ports {
     /// Reads the ports of node `id` from the descriptor `file`.
-    ///
-    /// # Errors
-    /// If the descriptor cannot be read or is invalid, has no such node, or both sends and receives
-    /// a topic.
     pub fn read(file: &Path, id: &str) -> Result<Self, BridgeError> {
         let topics = Topics {
             names: topic::NAMES,

@@ -21,9 +21,7 @@ const TICK: Duration = Duration::from_millis(50);
 
 /// Carries messages until the stop flag is set.
 ///
-/// # Errors
-/// If the descriptor or Zenoh's configuration cannot be used, the session cannot be opened, or the
-/// transport fails. An unreachable network is not an error: the bridge waits for it.
+/// An unreachable network is not an error: the bridge waits for it.
 pub fn run(graph: &Graph, config: &Config) -> Result<(), BridgeError> {
     let ports = Ports::read(&config.dataflow, &config.id)?;
     let robot = config.robot();

@@ -31,9 +31,6 @@ pub(crate) struct Drive {
 
 impl Drive {
     /// Reads a recording; the topics of scans and odometry are those to use if it has several.
-    ///
-    /// # Errors
-    /// If it cannot be read, has no scans, or its scans have different beams.
     pub(crate) fn open(
         path: &Path,
         scan: Option<&str>,

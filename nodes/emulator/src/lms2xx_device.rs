@@ -35,9 +35,6 @@ pub(crate) struct Lms2xxDevice {
 
 impl Lms2xxDevice {
     /// Creates the device as it is after power-on.
-    ///
-    /// # Errors
-    /// If the recording has the beams of no variant.
     pub(crate) fn new(baud: Baud, sweep: &Sweep) -> Result<Self, EmulatorError> {
         let has = |&(width, resolution): &(u16, u16)| {
             let half = i32::from(width) * 5000;

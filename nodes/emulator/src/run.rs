@@ -41,17 +41,12 @@ pub struct Summary {
 
 impl Summary {
     /// Returns true if the recording was played to its end but data was lost.
-    #[must_use]
     pub fn lost_data(&self) -> bool {
         self.finished && self.unanswered + self.refused > 0
     }
 }
 
 /// Plays the recording until it ends or the stop flag is set.
-///
-/// # Errors
-/// If the transport fails, the recording cannot be played as this device, or the socket or
-/// pseudo-terminal cannot be opened.
 pub fn run(graph: &Graph, config: &Config) -> Result<Summary, EmulatorError> {
     let common = Common::open(graph, config)?;
     match (&config.listen, &config.pty) {

@@ -35,9 +35,6 @@ pub(crate) struct Sweep {
 
 impl Sweep {
     /// Creates the sweep from its first scan, recorded at `time_ns`.
-    ///
-    /// # Errors
-    /// If no device can have these beams.
     pub(crate) fn first(
         time_ns: i64,
         scan: &ScanHeader,
@@ -76,9 +73,6 @@ impl Sweep {
     }
 
     /// Adds the next scan.
-    ///
-    /// # Errors
-    /// If its beams differ from those of the first scan.
     pub(crate) fn add(
         &mut self,
         time_ns: i64,

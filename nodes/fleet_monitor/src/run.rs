@@ -19,9 +19,7 @@ const TICK: Duration = Duration::from_millis(50);
 
 /// Serves the page until the stop flag is set.
 ///
-/// # Errors
-/// If the page cannot be served, the token or Zenoh's configuration cannot be used, or the
-/// transport of this machine fails. An unreachable network is not an error: the node waits for it.
+/// An unreachable network is not an error: the node waits for it.
 pub fn run(graph: &Graph, config: &Config) -> Result<(), FleetError> {
     let robots = Robots::default();
     let server = Server::start(config.page, &config.dashboard, robots.clone())?;

@@ -26,7 +26,6 @@ pub struct Config {
 
 impl Config {
     /// Returns the name of the robot.
-    #[must_use]
     pub fn robot(&self) -> String {
         let host = gethostname::gethostname();
         network_payload::robot_or_host(self.robot.as_deref(), &host.to_string_lossy())

@@ -17,9 +17,6 @@ use crate::{Config, ServerError};
 const TICK: Duration = Duration::from_millis(50);
 
 /// Serves viewers until the stop flag is set.
-///
-/// # Errors
-/// If it cannot listen, or the transport fails.
 pub fn run(graph: &Graph, config: &Config) -> Result<(), ServerError> {
     let context = Context::new();
     let serving = Serving::start().map_err(ServerError::Start)?;

@@ -39,9 +39,6 @@ impl Angles {
 
     /// Returns the angle convention for a scan over `field`, and the longest range of the device,
     /// metres.
-    ///
-    /// # Errors
-    /// [`ConventionError`] if the convention is unknown.
     pub(crate) fn of(&mut self, field: Field) -> Result<(AngleConvention, f32), ConventionError> {
         let angles = self.stated.as_ref().unwrap_or(&self.read);
         let convention = angles.convention(field)?;

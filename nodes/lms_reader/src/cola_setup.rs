@@ -113,9 +113,6 @@ impl Setup {
     }
 
     /// Returns the command to send now, if any.
-    ///
-    /// # Errors
-    /// [`LmsError::NoAnswer`].
     pub(crate) fn next(&mut self, now_ns: i64) -> Result<Option<Command<'static>>, LmsError> {
         if self.steps.front() == Some(&Step::CheckAhead) && self.find_ahead()? {
             self.advance();
@@ -143,9 +140,6 @@ impl Setup {
     }
 
     /// Processes an answer; ignores answers that do not belong to the last command.
-    ///
-    /// # Errors
-    /// If the device rejects a command, or reports settings other than those requested.
     pub(crate) fn receive(&mut self, answer: &Answer<'_>) -> Result<(), LmsError> {
         let Some(&step) = self.steps.front() else {
             return Ok(());

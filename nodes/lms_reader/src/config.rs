@@ -144,7 +144,6 @@ pub enum Rate {
 
 impl Config {
     /// Parses the command line; exits with code 2 if it is invalid.
-    #[must_use]
     pub fn from_command_line() -> Self {
         command_line::parse(Config::check)
     }
@@ -183,7 +182,6 @@ impl Config {
     }
 
     /// Returns the message fields that are not in the telegrams.
-    #[must_use]
     pub fn scan_settings(&self) -> ScanSettings {
         ScanSettings {
             range_min_m: self.range_min_m,
@@ -199,7 +197,6 @@ impl Config {
 
 impl Config {
     /// Returns the angle convention stated by the options, if any.
-    #[must_use]
     pub fn stated_angles(&self) -> Option<DeviceAngles> {
         let stated = self.zero_deg.map(|ahead_deg| {
             DeviceAngles::Stated(AngleConvention {

@@ -31,9 +31,6 @@ impl WholeScan<'_> {
     /// The stamp is the time of reception minus the time on the line and the time of the scan.
     /// Below one degree the mirror turns several times per scan, so the beams are not in order of
     /// time.
-    ///
-    /// # Errors
-    /// [`LmsError::Readings`] if the readings do not fit the format.
     pub(crate) fn header(
         &self,
         settings: &ScanSettings,

@@ -96,9 +96,6 @@ impl Setup {
     }
 
     /// Returns the next action.
-    ///
-    /// # Errors
-    /// [`LmsError::NoBaud`] or [`LmsError::NoAnswer`].
     pub(crate) fn next(&mut self, now_ns: i64) -> Result<Action, LmsError> {
         if self.baud.is_none() && self.steps.is_empty() {
             self.try_another_rate()?;
@@ -143,9 +140,6 @@ impl Setup {
     }
 
     /// Processes an answer; ignores answers that do not belong to the last command.
-    ///
-    /// # Errors
-    /// If the device rejects a command, or reports settings other than those requested.
     pub(crate) fn receive(&mut self, answer: &Answer<'_>) -> Result<(), LmsError> {
         let Some(&step) = self.steps.front() else {
             return Ok(());

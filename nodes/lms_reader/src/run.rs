@@ -18,10 +18,6 @@ use outlet::Outlet;
 ///
 /// A device that cannot be reached is tried again; a telegram that gives no scan is counted as
 /// refused.
-///
-/// # Errors
-/// If the transport fails, the capture cannot be read or has no usable scan, or the configuration
-/// names no source.
 pub fn run(graph: &Graph, config: &Config) -> Result<(), LmsError> {
     let mut outlet = Outlet::open(graph, config)?;
     match (&config.tcp, &config.serial, &config.capture) {

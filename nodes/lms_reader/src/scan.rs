@@ -96,9 +96,6 @@ pub struct Received {
 }
 
 /// Returns the channel of the scan: distances of the first echo.
-///
-/// # Errors
-/// [`LmsError::NoDistances`] with the names of the channels found.
 pub fn distances<'a>(data: &LmdScanData<'a>) -> Result<Channel<'a>, LmsError> {
     data.channels_16_bit.named(b"DIST1").ok_or_else(|| {
         let names = data.channels_16_bit.clone();
@@ -115,10 +112,6 @@ pub fn distances<'a>(data: &LmdScanData<'a>) -> Result<Channel<'a>, LmsError> {
 /// difference between "time of transmission" and "time since start-up". SICK documents the latter
 /// as the moment before the measurement starts. On a TiM781 the two are only 6 to 7 ms apart
 /// although its scan takes 50 ms, so its stamps are late by most of a scan.
-///
-/// # Errors
-/// [`LmsError::Scan`] if the device's times are implausible; [`LmsError::NoTime`] if the device's
-/// date and time are wanted but missing.
 pub(crate) fn measured_ns(
     data: &LmdScanData<'_>,
     settings: &ScanSettings,
@@ -146,7 +139,6 @@ pub(crate) fn measured_ns(
 ///
 /// Beams are ordered counter-clockwise whichever way the device turns. If it turns clockwise, the
 /// first beam is the one measured last: the stamp is its time, and the time increment is negative.
-#[must_use]
 pub fn header(
     data: &LmdScanData<'_>,
     distances: &Channel<'_>,
@@ -202,9 +194,6 @@ pub fn fill_ranges(distances: &Channel<'_>, clockwise: bool, ranges: &mut [f32])
 }
 
 /// Checks that the telegram can be converted to a scan.
-///
-/// # Errors
-/// [`LmsError::Scan`] with the invalid field.
 pub fn check(data: &LmdScanData<'_>, distances: &Channel<'_>) -> Result<(), LmsError> {
     let step_deg = f64::from(distances.step_raw_1e4_deg) * 1e-4;
     let sweep_deg = step_deg * distances.len().saturating_sub(1) as f64;

@@ -42,9 +42,7 @@ impl Summary {
 
 /// Records until the stop flag is set.
 ///
-/// # Errors
-/// If the file cannot be created, or the transport fails. A disk that fills up later is reported in
-/// `health`.
+/// A disk that fills up later is reported in `health`.
 pub fn run(graph: &Graph, config: &Config) -> Result<Summary, RecorderError> {
     let inputs = Inputs::open(graph, config.field)?;
     let mut recorder = Recorder::new(graph, config)?;

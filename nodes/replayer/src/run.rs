@@ -48,9 +48,7 @@ impl Summary {
 
 /// Plays the recording until it ends or the stop flag is set.
 ///
-/// # Errors
-/// If the recording cannot be read or has no scans, or if the transport fails. A damaged recording
-/// is played up to the damage.
+/// A damaged recording is played up to the damage.
 pub fn run(graph: &Graph, config: &Config) -> Result<Summary, ReplayerError> {
     let mut outlet = Outlet::open(graph)?;
     let answers = graph.subscriber::<topic::Hypotheses>()?;

@@ -20,7 +20,6 @@ impl AngleConvention {
     };
 
     /// Returns the bearing of a device angle: degrees counter-clockwise from ahead.
-    #[must_use]
     pub fn bearing_deg(self, device_deg: f64) -> f64 {
         match self.clockwise {
             true => self.ahead_deg - device_deg,
@@ -30,7 +29,6 @@ impl AngleConvention {
 
     /// Returns the bearing of the rightmost beam, from which the others follow counter-clockwise.
     /// Whole turns are removed so that the middle of the field is within 180° of ahead.
-    #[must_use]
     pub fn rightmost_bearing_deg(self, field: Field) -> f64 {
         let rightmost_deg = self.bearing_deg(match self.clockwise {
             true => field.last_deg,
@@ -65,7 +63,6 @@ pub struct Field {
 
 impl Field {
     /// Returns the field that a channel's values cover.
-    #[must_use]
     pub fn of(channel: &Channel<'_>) -> Self {
         let first_deg = f64::from(channel.start_angle_raw_1e4_deg) * 1e-4;
         let steps = channel.len().saturating_sub(1) as f64;
@@ -76,7 +73,6 @@ impl Field {
     }
 
     /// Returns the field of a scan configuration.
-    #[must_use]
     pub fn measured(config: &ScanConfig) -> Self {
         Field {
             first_deg: f64::from(config.start_angle_raw_1e4_deg) * 1e-4,
@@ -85,7 +81,6 @@ impl Field {
     }
 
     /// Returns the angle halfway between the first and the last beam, degrees.
-    #[must_use]
     pub fn middle_deg(self) -> f64 {
         0.5 * (self.first_deg + self.last_deg)
     }
@@ -101,7 +96,6 @@ impl std::fmt::Display for Field {
 
 /// Returns the time that a device takes from the first value of a scan to the last, microseconds; 0
 /// if it does not report its scan frequency.
-#[must_use]
 pub fn sweep_us(channel: &Channel<'_>, scan_frequency_raw_1e2_hz: u32) -> i64 {
     if scan_frequency_raw_1e2_hz == 0 {
         return 0;

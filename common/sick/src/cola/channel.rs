@@ -68,12 +68,10 @@ impl<'a> Channel<'a> {
         self.values.write(writer, width);
     }
 
-    #[must_use]
     pub fn len(&self) -> usize {
         self.values.len()
     }
 
-    #[must_use]
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
@@ -127,7 +125,6 @@ impl<'a> Channels<'a> {
     }
 
     /// Returns the channel with this name.
-    #[must_use]
     pub fn named(&self, name: &[u8; 5]) -> Option<Channel<'a>> {
         self.clone().find(|channel| &channel.name == name)
     }

@@ -24,7 +24,6 @@ pub enum DeviceAngles {
 
 impl DeviceAngles {
     /// Looks up the name that a device reports (`DeviceIdent`).
-    #[must_use]
     pub fn of_name(name: &[u8]) -> Self {
         let name = name.escape_ascii().to_string();
         match KnownDevice::named(&name) {
@@ -34,10 +33,6 @@ impl DeviceAngles {
     }
 
     /// Returns the angle convention for a scan over `field`.
-    ///
-    /// # Errors
-    /// [`ConventionError`], which names the options to set, if the device is not known and the
-    /// middle of the field is not where most devices have ahead.
     pub fn convention(&self, field: Field) -> Result<AngleConvention, ConventionError> {
         let usual = AngleConvention::USUAL;
         let is_centred = (field.middle_deg() - usual.ahead_deg).abs() <= TOLERANCE_DEG;
@@ -57,7 +52,6 @@ impl DeviceAngles {
     }
 
     /// Returns the convention if it does not depend on the field.
-    #[must_use]
     pub fn certain(&self) -> Option<AngleConvention> {
         match self {
             DeviceAngles::Stated(convention) => Some(*convention),
@@ -67,7 +61,6 @@ impl DeviceAngles {
     }
 
     /// Longest range that the device is known to measure, metres.
-    #[must_use]
     pub fn reach_m(&self) -> f32 {
         match self {
             DeviceAngles::Known(row) => row.reach_m(),

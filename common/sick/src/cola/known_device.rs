@@ -95,7 +95,6 @@ impl KnownDevice {
 
     /// Finds the row of a name as the device reports it (`DeviceIdent`) or as people write it:
     /// `LMS10x_FieldEval`, `TIM2xx V1.0`, `NAV310-3211`, `tim-240`.
-    #[must_use]
     pub fn named(name: &str) -> Option<&'static KnownDevice> {
         let found = model(name)?;
         Self::ALL.iter().find(|row| {
@@ -105,13 +104,11 @@ impl KnownDevice {
     }
 
     /// Longest range that the device measures, metres.
-    #[must_use]
     pub fn reach_m(&self) -> f32 {
         self.reach_m.unwrap_or(USUAL_REACH_M)
     }
 
     /// Returns a list of the devices with a known convention, for messages.
-    #[must_use]
     pub fn names() -> String {
         let rows = Self::ALL.iter().filter(|row| row.convention.is_some());
         let mut names: Vec<&str> = rows.map(|row| row.name).collect();

@@ -78,9 +78,6 @@ pub struct LmdScanData<'a> {
 
 impl<'a> LmdScanData<'a> {
     /// Parses the whole content of a telegram.
-    ///
-    /// # Errors
-    /// [`SickError::Short`], [`SickError::Field`] or [`SickError::Trailing`], each with the offset.
     pub fn read(encoding: Encoding, content: &'a [u8]) -> Result<Self, SickError> {
         let mut whole = Cursor::new(Encoding::Binary, content, 0);
         let command = whole.take("command and name", COMMAND)?;

@@ -70,7 +70,6 @@ pub struct ScanDataConfig {
 
 impl ScanConfig {
     /// Joins a mirror frequency with a range of angles.
-    #[must_use]
     pub fn new(frequency_raw_1e2_hz: u32, range: OutputRange) -> Self {
         ScanConfig {
             frequency_raw_1e2_hz,
@@ -81,7 +80,6 @@ impl ScanConfig {
     }
 
     /// Returns the range of angles that is measured.
-    #[must_use]
     pub fn range(&self) -> OutputRange {
         OutputRange {
             resolution_raw_1e4_deg: self.resolution_raw_1e4_deg,

@@ -27,7 +27,6 @@ pub type Framer = framer::Framer<Cola>;
 
 impl Framer {
     /// Creates a framer at the start of a stream in this encoding.
-    #[must_use]
     pub fn new(encoding: Encoding) -> Self {
         Framer::of(Cola {
             encoding,

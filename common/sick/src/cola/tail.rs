@@ -26,7 +26,6 @@ pub struct DeviceTime {
 
 impl DeviceTime {
     /// Converts microseconds since 1970 (UTC); `None` outside the years 0 to 65535.
-    #[must_use]
     pub fn from_unix_us(unix_us: i64) -> Option<Self> {
         let time = DateTime::from_timestamp_micros(unix_us)?;
         Some(DeviceTime {
@@ -42,7 +41,6 @@ impl DeviceTime {
 
     /// Returns microseconds since 1970, taking the clock as UTC; `None` if the date does not exist,
     /// as on devices whose clock was never set. Second 60 is the first second of the next minute.
-    #[must_use]
     pub fn unix_us(&self) -> Option<i64> {
         let (month, day) = (self.month.into(), self.day.into());
         let date = NaiveDate::from_ymd_opt(self.year.into(), month, day)?;

@@ -18,8 +18,7 @@ pub enum Telegram<'a> {
 impl<'a> Telegram<'a> {
     /// Parses the content of a telegram.
     ///
-    /// # Errors
-    /// If the parameters do not fit the command. Unsupported commands are accepted as they are.
+    /// Unsupported commands are accepted as they are.
     pub fn read(encoding: Encoding, content: &'a [u8]) -> Result<Self, SickError> {
         let Some((letters, rest)) = content.split_first_chunk::<3>() else {
             return Ok(Telegram::Other(content));

@@ -31,7 +31,6 @@ impl Variable {
         Variable::HostEncoding,
     ];
 
-    #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
             Variable::DeviceIdent => "DeviceIdent",
@@ -67,7 +66,6 @@ pub enum Value<'a> {
 }
 
 /// Returns the word for a device state.
-#[must_use]
 pub fn state_word(state: u8) -> &'static str {
     let words = ["busy", "ready", "error", "standby"];
     words.get(usize::from(state)).copied().unwrap_or("unknown")
@@ -75,7 +73,6 @@ pub fn state_word(state: u8) -> &'static str {
 
 impl<'a> Value<'a> {
     /// Returns the variable that holds this value.
-    #[must_use]
     pub fn variable(&self) -> Variable {
         match self {
             Value::DeviceIdent { .. } => Variable::DeviceIdent,

@@ -56,8 +56,7 @@ pub enum Answer<'a> {
 impl<'a> Reply<'a> {
     /// Parses a payload or the single byte of an acknowledgement.
     ///
-    /// # Errors
-    /// If the data do not fit the code. Unsupported codes are accepted as they are.
+    /// Unsupported codes are accepted as they are.
     pub fn read(content: &'a [u8]) -> Result<Self, SickError> {
         match content {
             [ACK] => Ok(Reply::Acknowledged),

@@ -70,7 +70,6 @@ impl Baud {
     pub const ALL: [Baud; 4] = [Baud::B9600, Baud::B19200, Baud::B38400, Baud::B500000];
 
     /// Returns the rate in bits per second.
-    #[must_use]
     pub const fn rate(self) -> u32 {
         match self {
             Baud::B9600 => 9600,
@@ -81,7 +80,6 @@ impl Baud {
     }
 
     /// Returns the baud rate with this many bits per second.
-    #[must_use]
     pub fn from_rate(rate: u32) -> Option<Self> {
         Self::ALL.into_iter().find(|baud| baud.rate() == rate)
     }
@@ -107,7 +105,6 @@ impl FromStr for Baud {
 
 impl Mode {
     /// Returns the code used in telegrams.
-    #[must_use]
     pub const fn code(self) -> u8 {
         match self {
             Mode::Installation { .. } => 0x00,
@@ -142,8 +139,7 @@ impl Mode {
 impl<'a> Command<'a> {
     /// Parses a payload.
     ///
-    /// # Errors
-    /// If the data do not fit the code. Unsupported codes are accepted as they are.
+    /// Unsupported codes are accepted as they are.
     pub fn read(payload: &'a [u8]) -> Result<Self, SickError> {
         let mut fields = Cursor::little_endian(payload);
         let command = match fields.u8("code")? {

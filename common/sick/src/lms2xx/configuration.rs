@@ -31,7 +31,6 @@ pub struct Configuration {
 
 impl Configuration {
     /// Returns the configuration of a device with only these two values set.
-    #[must_use]
     pub fn new(range_mode: RangeMode, unit: Unit) -> Self {
         Configuration {
             bytes: [0; LONGEST],

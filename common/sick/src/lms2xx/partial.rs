@@ -19,7 +19,6 @@ pub struct PartialScans {
 impl PartialScans {
     /// Creates an assembler for scans of this width and resolution; `None` unless the resolution is
     /// 1, 1/2 or 1/4 of a degree.
-    #[must_use]
     pub fn new(width_deg: u16, resolution_raw_1e2_deg: u16) -> Option<Self> {
         let parts = match resolution_raw_1e2_deg {
             100 => 1,
@@ -64,7 +63,6 @@ impl PartialScans {
     }
 
     /// Returns the number of parts that belonged to no complete scan.
-    #[must_use]
     pub fn dropped(&self) -> u64 {
         self.dropped
     }

@@ -13,12 +13,10 @@ pub enum Unit {
 }
 
 impl Unit {
-    #[must_use]
     pub const fn code(self) -> u8 {
         self as u8
     }
 
-    #[must_use]
     pub const fn from_code(code: u8) -> Option<Self> {
         match code {
             0 => Some(Unit::Centimetre),
@@ -28,7 +26,6 @@ impl Unit {
     }
 
     /// Returns the length of the unit in metres.
-    #[must_use]
     pub const fn metres(self) -> f64 {
         match self {
             Unit::Centimetre => 0.01,
@@ -74,18 +71,15 @@ impl RangeMode {
         RangeMode::Amplitude,
     ];
 
-    #[must_use]
     pub const fn code(self) -> u8 {
         self as u8
     }
 
-    #[must_use]
     pub fn from_code(code: u8) -> Option<Self> {
         Self::ALL.into_iter().find(|mode| mode.code() == code)
     }
 
     /// Returns the mask of the distance bits; 0 for amplitudes.
-    #[must_use]
     pub const fn mask(self) -> u16 {
         match self {
             RangeMode::Range8Fields
@@ -100,13 +94,11 @@ impl RangeMode {
     }
 
     /// Returns the largest distance; larger values are codes.
-    #[must_use]
     pub const fn last_distance(self) -> u16 {
         self.mask().saturating_sub(9)
     }
 
     /// Returns the distance in a reading, or `None` if there was no echo.
-    #[must_use]
     pub const fn distance(self, reading: u16) -> Option<u16> {
         let distance = reading & self.mask();
         if distance > self.last_distance() || self.mask() == 0 {
@@ -116,7 +108,6 @@ impl RangeMode {
     }
 
     /// Encodes a distance as a reading; `None` means no echo.
-    #[must_use]
     pub const fn reading(self, distance: Option<u16>) -> u16 {
         match distance {
             Some(distance) if distance <= self.last_distance() => distance,

@@ -38,7 +38,6 @@ pub struct Part(u8);
 
 impl Part {
     /// Returns the part that starts at 0 to 3 quarters of a degree.
-    #[must_use]
     pub const fn at_quarter(quarter: u8) -> Option<Self> {
         if quarter < 4 {
             Some(Part(quarter))
@@ -48,7 +47,6 @@ impl Part {
     }
 
     /// Returns the start in quarters of a degree.
-    #[must_use]
     pub const fn quarter(self) -> u8 {
         self.0
     }
@@ -56,7 +54,6 @@ impl Part {
 
 impl<'a> Scan<'a> {
     /// Returns a whole scan of these readings.
-    #[must_use]
     pub fn new(unit: Unit, readings: &'a [u16]) -> Self {
         Scan {
             unit,

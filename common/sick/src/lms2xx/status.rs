@@ -16,25 +16,21 @@ pub struct Status(pub u8);
 
 impl Status {
     /// Returns the severity: 0 ok, 1 information, 2 warning, 3 error, 4 fatal error.
-    #[must_use]
     pub const fn level(self) -> u8 {
         self.0 & 7
     }
 
     /// Returns true if measured values are implausible.
-    #[must_use]
     pub const fn is_implausible(self) -> bool {
         self.0 & 1 << 6 != 0
     }
 
     /// Returns true if the window is dirty.
-    #[must_use]
     pub const fn is_polluted(self) -> bool {
         self.0 & 1 << 7 != 0
     }
 
     /// Returns true if neither an error nor a dirty window affects the readings.
-    #[must_use]
     pub const fn is_in_order(self) -> bool {
         self.level() < 3 && !self.is_implausible() && !self.is_polluted()
     }

@@ -14,9 +14,6 @@ const MAX: u32 = 100_000;
 /// Creates the file `path`; if it exists, the first free one of `stem_1.mcap`, `stem_2.mcap` and so
 /// on. With `numbered`, the names start at `stem_0.mcap`, like the parts of a rosbag2 bag. Missing
 /// folders are created.
-///
-/// # Errors
-/// If the file cannot be created, or all names are taken.
 pub(super) fn create(path: &Path, numbered: bool) -> Result<(PathBuf, File), RecorderError> {
     if let Some(folder) = path.parent() {
         std::fs::create_dir_all(folder).map_err(failed(path))?;
