@@ -9,6 +9,7 @@ pub mod stdout;
 pub use number::{number, within};
 
 use std::io;
+use std::process::ExitCode;
 
 use clap::{Parser, error::ErrorKind};
 
@@ -18,6 +19,14 @@ pub const FAILED: u8 = 1;
 pub const WRONG_USE: u8 = 2;
 /// Exit code of a run that finished but lost data.
 pub const LOST_DATA: u8 = 3;
+
+/// Returns the exit code of a run that finished.
+pub fn finished(lost_data: bool) -> ExitCode {
+    match lost_data {
+        true => ExitCode::from(LOST_DATA),
+        false => ExitCode::SUCCESS,
+    }
+}
 
 /// Parses the command line; exits with code 2 if it is invalid or `check` finds a problem.
 pub fn parse<C: Parser>(check: impl FnOnce(&C) -> Result<(), String>) -> C {

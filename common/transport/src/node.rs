@@ -3,7 +3,7 @@
 use std::env::VarError;
 use std::error::Error;
 use std::io::IsTerminal;
-use std::process::ExitCode;
+use std::process::{ExitCode, Termination};
 use std::time::{SystemTime, UNIX_EPOCH};
 
 use tracing_subscriber::filter::LevelFilter;
@@ -24,16 +24,19 @@ pub const LOG_FORMAT_VARIABLE: &str = "BACKCAST_LOG_FORMAT";
 pub const CHECK_ARGUMENTS_VARIABLE: &str = "BACKCAST_CHECK_ARGUMENTS";
 
 /// Runs one node: starts logging, joins the graph as `name` and calls `run`. Returns 1 if joining
-/// or `run` failed, 2 if a logging variable is invalid.
-pub fn main<E: Error + 'static>(name: &str, run: impl FnOnce(&Graph) -> Result<(), E>) -> ExitCode {
+/// or `run` failed, 2 if a logging variable is invalid, else the code of its result.
+pub fn main<T: Termination, E: Error + 'static>(
+    name: &str,
+    run: impl FnOnce(&Graph) -> Result<T, E>,
+) -> ExitCode {
     main_with_log(name, "", run)
 }
 
 /// Like [`main`], with `filter` in place of an unset `RUST_LOG`.
-pub fn main_with_log<E: Error + 'static>(
+pub fn main_with_log<T: Termination, E: Error + 'static>(
     name: &str,
     filter: &str,
-    run: impl FnOnce(&Graph) -> Result<(), E>,
+    run: impl FnOnce(&Graph) -> Result<T, E>,
 ) -> ExitCode {
     if std::env::var_os(CHECK_ARGUMENTS_VARIABLE).is_some() {
         return ExitCode::SUCCESS;
@@ -47,8 +50,10 @@ pub fn main_with_log<E: Error + 'static>(
         Err(error) => return failed(&error),
     };
     // The error is logged before the graph is dropped, so that the graph receives it.
-    let ended = run(&graph);
-    ended.map_or_else(|error| failed(&error), |()| ExitCode::SUCCESS)
+    match run(&graph) {
+        Ok(done) => done.report(),
+        Err(error) => failed(&error),
+    }
 }
 
 fn failed(error: &(dyn Error + 'static)) -> ExitCode {

@@ -5,14 +5,12 @@
 
 use sick::cola::{
     AUTHORIZED_CLIENT, AngleConvention, Answer, Channel, Channels, Command, DeviceTime, Encoding,
-    Fault, KnownDevice, LmdScanData, Method, OutputRange, PASSWORD_AUTHORIZED_CLIENT, ScanConfig,
-    ScanDataConfig, Telegram, Value, Variable, sweep_us,
+    FIRST_DISTANCE, Fault, KnownDevice, LmdScanData, Method, OutputRange,
+    PASSWORD_AUTHORIZED_CLIENT, ScanConfig, ScanDataConfig, Telegram, Value, Variable, sweep_us,
 };
 
 use crate::sweep::{AHEAD_RAW, Sweep};
 
-/// Smallest raw value that is a distance; lower values are codes.
-const FIRST_DISTANCE: f64 = 16.0;
 /// Longest distance of 16 bits in millimetres.
 const FARTHEST_M: f32 = 65.535;
 
@@ -25,10 +23,8 @@ pub(crate) struct Session {
     pub(crate) subscribed: bool,
 }
 
-/// Emulated device type.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Model {
-    /// Name that the device reports.
     name: &'static str,
     convention: AngleConvention,
 }
@@ -299,7 +295,7 @@ impl ColaDevice {
             let range = sweep.range(scan, self.model.turn_back(angle));
             let range = range.map(f64::from);
             let units = range.map_or(0.0, |metres| (metres / unit_m).round());
-            match (FIRST_DISTANCE..=f64::from(u16::MAX)).contains(&units) {
+            match (f64::from(FIRST_DISTANCE)..=f64::from(u16::MAX)).contains(&units) {
                 true => units as u16,
                 false => 0,
             }

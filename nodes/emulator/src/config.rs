@@ -107,24 +107,22 @@ fn listen(text: &str) -> Result<String, String> {
 mod tests {
     use super::*;
 
-    fn parse(arguments: &str) -> Result<Config, String> {
-        let words = ["emulator"].into_iter().chain(arguments.split_whitespace());
-        Config::try_parse_from(words).map_err(|error| error.to_string())
-    }
-
     #[test]
     fn what_is_refused_says_what_is_allowed() {
-        let refuse = |arguments: &str, expected: &str| {
-            let text = parse(&format!("--recording a {arguments}")).unwrap_err();
+        for (arguments, expected) in [
+            ("", "--listen"),
+            ("--listen tcp://a:1 --device XY7", "known are LMS1xx"),
+            ("--listen 127.0.0.1:2112", "tcp://HOST:PORT"),
+            ("--listen tcp://a:x", "0 to 65535"),
+            ("--pty b --baud 1", "38400 and 500000"),
+            ("--pty b --rate 0", "0.001 to 1000, and max"),
+            ("--pty b --patience 0", "0.1 to 3600 seconds"),
+            ("--pty b --fault crc=2", "0 to 1"),
+        ] {
+            let arguments = format!("emulator --recording a {arguments}");
+            let outcome = Config::try_parse_from(arguments.split_whitespace());
+            let text = outcome.unwrap_err().to_string();
             assert!(text.contains(expected), "{arguments}: {text}");
-        };
-        refuse("", "--listen");
-        refuse("--listen tcp://a:1 --device XY7", "known are LMS1xx");
-        refuse("--listen 127.0.0.1:2112", "tcp://HOST:PORT");
-        refuse("--listen tcp://a:x", "0 to 65535");
-        refuse("--pty b --baud 1", "38400 and 500000");
-        refuse("--pty b --rate 0", "0.001 to 1000, and max");
-        refuse("--pty b --patience 0", "0.1 to 3600 seconds");
-        refuse("--pty b --fault crc=2", "0 to 1");
+        }
     }
 }

@@ -12,7 +12,6 @@ use replay::{Channels, Content, InOrder, PlaybackError, Selection, Source, Timed
 use crate::EmulatorError;
 use crate::sweep::Sweep;
 
-/// Event of the drive.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) enum Happening {
     Scan(usize),

@@ -5,7 +5,6 @@ use std::path::PathBuf;
 use recording::RecordingError;
 use replay::PlaybackError;
 
-/// Error of the node, with the value found and the values allowed.
 #[derive(Debug, thiserror::Error)]
 pub enum EmulatorError {
     #[error(transparent)]
@@ -18,7 +17,6 @@ pub enum EmulatorError {
     #[error("scan {scan} of the recording: {field} is {found}, allowed is {allowed}")]
     Scan {
         scan: usize,
-        /// Property that does not fit.
         field: &'static str,
         found: f64,
         allowed: String,

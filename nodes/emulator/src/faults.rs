@@ -71,7 +71,6 @@ fn duration(text: &str) -> Result<Duration, String> {
     }
 }
 
-/// Generator of the faults of a plan.
 #[derive(Debug)]
 pub(crate) struct Faults {
     plan: FaultPlan,
@@ -131,7 +130,6 @@ impl Faults {
         }
     }
 
-    /// Returns true if the device restarts now.
     pub(crate) fn resets(&mut self, now_ns: i64) -> bool {
         let (Some(at_ns), Some(every)) = (self.next_reset_ns, self.plan.reset) else {
             return false;

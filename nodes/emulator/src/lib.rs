@@ -19,4 +19,4 @@ mod sweep;
 pub use config::Config;
 pub use error::EmulatorError;
 pub use faults::FaultPlan;
-pub use run::{Summary, run};
+pub use run::run;

@@ -75,7 +75,6 @@ impl Lms2xxDevice {
         Reply::Answer(Answer::Started(TYPE), STATUS)
     }
 
-    /// Returns true if the client wants scans.
     pub(crate) fn is_wanted(&self) -> bool {
         self.mode == Mode::Continuous || self.is_asked
     }

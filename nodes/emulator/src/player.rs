@@ -9,7 +9,6 @@ use replay::{Action, Rate, Schedule};
 
 use crate::drive::Happening;
 
-/// Event that is due now.
 #[derive(Debug, PartialEq)]
 pub(crate) enum Due<'a> {
     /// Scan to send; `counter` is the number of scans before it.
@@ -18,7 +17,6 @@ pub(crate) enum Due<'a> {
     Other(&'a Happening),
 }
 
-/// Player of events in order of time.
 #[derive(Debug)]
 pub(crate) struct Player {
     happenings: Vec<(i64, Happening)>,
@@ -64,7 +62,6 @@ impl Player {
         }
     }
 
-    /// Starts playback, unless it has started.
     pub(crate) fn start(&mut self) {
         self.has_started = true;
     }
@@ -74,12 +71,10 @@ impl Player {
         self.wake_ns
     }
 
-    /// Returns true if playback waits for an answer.
     pub(crate) fn awaits_answer(&self) -> bool {
         self.rate == Rate::Max && self.schedule.awaited().is_some()
     }
 
-    /// Returns the next event that is due at `now_ns`.
     pub(crate) fn take(&mut self, now_ns: i64) -> Option<Due<'_>> {
         self.wake_ns = None;
         while self.has_started && !self.is_over {
@@ -139,7 +134,6 @@ impl Player {
         }
     }
 
-    /// Returns true if no events are left.
     pub(crate) fn is_over(&self) -> bool {
         self.is_over
     }

@@ -3,10 +3,12 @@
 mod pty;
 mod tcp;
 
+use std::process::ExitCode;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
+use command_line::finished;
 use messages::{NodeState, topic};
 use replay::{Awaited, Poses};
 use transport::{Graph, Health, Subscriber, TransportError, monotonic_ns, with_causes};
@@ -28,26 +30,8 @@ const ANSWER_SLICE: Duration = Duration::from_millis(1);
 /// Longest wait at the end for clients to read the last scans, nanoseconds.
 const TIMEOUT_NS: i64 = 10_000_000_000;
 
-/// Result of a run.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub struct Summary {
-    /// True if the recording was played to its end; false if the node was stopped.
-    pub finished: bool,
-    /// Number of scans without an answer.
-    pub unanswered: u64,
-    /// Number of messages of the recording that could not be used.
-    pub refused: u64,
-}
-
-impl Summary {
-    /// Returns true if the recording was played to its end but data was lost.
-    pub fn lost_data(&self) -> bool {
-        self.finished && self.unanswered + self.refused > 0
-    }
-}
-
 /// Plays the recording until it ends or the stop flag is set.
-pub fn run(graph: &Graph, config: &Config) -> Result<Summary, EmulatorError> {
+pub fn run(graph: &Graph, config: &Config) -> Result<ExitCode, EmulatorError> {
     let common = Common::open(graph, config)?;
     match (&config.listen, &config.pty) {
         (Some(address), _) => {
@@ -57,7 +41,7 @@ pub fn run(graph: &Graph, config: &Config) -> Result<Summary, EmulatorError> {
         }
         (None, Some(link)) => pty::run(link, config.baud, common),
         // The command line excludes this case.
-        (None, None) => Ok(Summary::default()),
+        (None, None) => Ok(ExitCode::SUCCESS),
     }
 }
 
@@ -152,19 +136,14 @@ impl Common {
         Ok(None)
     }
 
-    /// Logs and returns the result.
-    fn conclude(&self, finished: bool) -> Summary {
-        let unanswered = self.player.unanswered;
-        let how = if finished {
-            "has been played"
-        } else {
-            "was stopped"
+    /// Logs the result; returns the exit code.
+    fn conclude(&self, is_finished: bool) -> ExitCode {
+        let (unanswered, refused) = (self.player.unanswered, self.refused);
+        let how = match is_finished {
+            true => "has been played",
+            false => "was stopped",
         };
-        tracing::info!(unanswered, refused = self.refused, "the recording {how}");
-        Summary {
-            finished,
-            unanswered,
-            refused: self.refused,
-        }
+        tracing::info!(unanswered, refused, "the recording {how}");
+        finished(is_finished && unanswered + refused > 0)
     }
 }

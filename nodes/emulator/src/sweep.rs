@@ -16,11 +16,8 @@ const TURN: std::ops::RangeInclusive<i64> = -3_600_000..=3_600_000;
 /// Scans of a recording. Angles are in 1/10000°, in the device's convention: 0 is right, 90° ahead.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Sweep {
-    /// Angle of the first beam.
     pub(crate) start_raw: i32,
-    /// Angle between consecutive beams.
     pub(crate) step_raw: i32,
-    /// Number of beams per scan.
     pub(crate) count: usize,
     pub(crate) scan_time_s: f64,
     /// True if the recording states the scan time; false if it is estimated.
@@ -72,7 +69,6 @@ impl Sweep {
         })
     }
 
-    /// Adds the next scan.
     pub(crate) fn add(
         &mut self,
         time_ns: i64,
@@ -120,7 +116,6 @@ impl Sweep {
         }
     }
 
-    /// Returns the angle of the last beam.
     pub(crate) fn stop_raw(&self) -> i32 {
         self.start_raw + (self.count as i32 - 1) * self.step_raw
     }

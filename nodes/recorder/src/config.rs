@@ -102,26 +102,24 @@ impl SyncPeriod {
 mod tests {
     use super::*;
 
-    fn parse(arguments: &str) -> Result<Config, String> {
-        let words = ["recorder"].into_iter().chain(arguments.split_whitespace());
-        Config::try_parse_from(words).map_err(|error| error.to_string())
-    }
-
     #[test]
     fn what_is_refused_says_what_is_allowed() {
-        let refuse = |arguments: &str, expected: &str| {
-            let text = parse(arguments).unwrap_err();
+        for (arguments, expected) in [
+            ("", "--output"),
+            ("--output r --split-size 0", "0 is not in 1.."),
+            ("--output r --split-time soon", "as 90s, 10m"),
+            ("--output r --sync often", "or never"),
+            (
+                "--output r --keep 1m --split-time 1m",
+                "cannot be used with",
+            ),
+            ("--output r --save-on lost-pose", "--keep"),
+            ("--output r --base-frame=", "allowed are 1 to 256"),
+        ] {
+            let words = ["recorder"].into_iter().chain(arguments.split_whitespace());
+            let outcome = Config::try_parse_from(words);
+            let text = outcome.unwrap_err().to_string();
             assert!(text.contains(expected), "{arguments}: {text}");
-        };
-        refuse("", "--output");
-        refuse("--output r --split-size 0", "0 is not in 1..");
-        refuse("--output r --split-time soon", "as 90s, 10m");
-        refuse("--output r --sync often", "or never");
-        refuse(
-            "--output r --keep 1m --split-time 1m",
-            "cannot be used with",
-        );
-        refuse("--output r --save-on lost-pose", "--keep");
-        refuse("--output r --base-frame=", "allowed are 1 to 256");
+        }
     }
 }

@@ -5,7 +5,6 @@ use std::path::PathBuf;
 
 use recording::RecordingError;
 
-/// Error of the node, with the value found and the values allowed.
 #[derive(Debug, thiserror::Error)]
 pub enum RecorderError {
     /// A file cannot be created, read, written or synced: what was tried, and the system's error.

@@ -5,7 +5,6 @@ use messages::{HealthHeader, NodeState, TrackState, Verdict};
 /// Number of consecutive scans without a place after which the pose counts as lost.
 const LOST_AFTER: u32 = 5;
 
-/// Event on which a black box is saved.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
 pub enum Event {
     /// The tracker lost the pose; without a tracker, five consecutive scans without a place after
@@ -34,7 +33,6 @@ pub(crate) struct EventDetector {
 }
 
 impl EventDetector {
-    /// Processes the verdict code of a scan.
     pub(crate) fn verdict(&mut self, code: u32) -> Option<Event> {
         if self.tracked.is_some() {
             return None;
@@ -52,7 +50,6 @@ impl EventDetector {
         Some(Event::LostPose)
     }
 
-    /// Processes the state code of the tracker.
     pub(crate) fn state(&mut self, code: u32) -> Option<Event> {
         let state = TrackState::from_code(code)?;
         let before = self.tracked.replace(state);
@@ -60,7 +57,6 @@ impl EventDetector {
         is_lost.then_some(Event::LostPose)
     }
 
-    /// Processes the health report of a node.
     pub(crate) fn health(&mut self, report: &HealthHeader) -> Option<Event> {
         let node = report.node.as_str();
         let known = self.degraded.iter().position(|other| other == node);

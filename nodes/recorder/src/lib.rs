@@ -22,4 +22,4 @@ mod writing;
 pub use config::{Config, SyncPeriod};
 pub use error::RecorderError;
 pub use events::Event;
-pub use run::{Summary, run};
+pub use run::run;

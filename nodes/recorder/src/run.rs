@@ -2,11 +2,13 @@
 
 mod writer;
 
+use std::process::ExitCode;
 use std::rc::Rc;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
+use command_line::finished;
 use messages::{HealthHeader, NodeState, topic};
 use nix::time::{ClockId, clock_gettime};
 use ros_export::{Inputs, Listener, Transcript};
@@ -15,35 +17,16 @@ use transport::{Flow, Graph, Input, Subscriber, wall_ns};
 use writer::{Status, Writer};
 
 use crate::events::EventDetector;
+use crate::writing::Tally;
 use crate::{Config, Event, RecorderError};
 
 /// Longest delay of a save signal or a health report.
 const TICK: Duration = Duration::from_millis(100);
 
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub struct Summary {
-    /// Number of messages recorded, or kept by a black box for some time.
-    pub recorded: u64,
-    /// Number of samples and messages lost.
-    pub dropped: u64,
-    /// Number of samples that could not be used.
-    pub refused: u64,
-    /// Number of files written.
-    pub files: u64,
-    /// True if the writer had a problem at the end.
-    pub failed: bool,
-}
-
-impl Summary {
-    pub fn lost_data(&self) -> bool {
-        self.failed || self.dropped + self.refused > 0
-    }
-}
-
 /// Records until the stop flag is set.
 ///
 /// A disk that fills up later is reported in `health`.
-pub fn run(graph: &Graph, config: &Config) -> Result<Summary, RecorderError> {
+pub fn run(graph: &Graph, config: &Config) -> Result<ExitCode, RecorderError> {
     let inputs = Inputs::open(graph, config.field)?;
     let mut recorder = Recorder::new(graph, config)?;
     recorder.transcript.health.state(NodeState::Ready)?;
@@ -82,10 +65,11 @@ impl Recorder {
                 None => Vec::new(),
             },
             save,
-            saves: match config.keep {
-                Some(_) => Some(Rc::new(graph.subscriber()?)),
-                None => None,
-            },
+            saves: config
+                .keep
+                .map(|_| graph.subscriber())
+                .transpose()?
+                .map(Rc::new),
             writer: Writer::start(graph.name().as_str(), config)?,
             status: Status::default(),
         })
@@ -106,7 +90,6 @@ impl Recorder {
         self.report()
     }
 
-    /// Reports the writer's state to the graph.
     fn report(&mut self) -> Result<(), RecorderError> {
         let status = self.writer.status();
         let written = status.tally.recorded - self.status.tally.recorded;
@@ -151,7 +134,7 @@ impl Recorder {
         Ok(())
     }
 
-    fn conclude(mut self) -> Result<Summary, RecorderError> {
+    fn conclude(mut self) -> Result<ExitCode, RecorderError> {
         self.transcript.entries.finish(wall_ns())?;
         self.hand_over()?;
         let status = self.writer.finish()?;
@@ -162,23 +145,13 @@ impl Recorder {
         }
         self.transcript
             .count_dropped(status.tally.dropped - self.status.tally.dropped);
-        let summary = Summary {
-            recorded: status.tally.recorded,
-            dropped: self.transcript.dropped(),
-            refused: self.transcript.refused(),
-            files: status.tally.files,
-            failed: status.problem.is_some(),
-        };
-        let Summary {
-            recorded,
-            dropped,
-            refused,
-            files,
-            ..
-        } = summary;
+        let Tally {
+            recorded, files, ..
+        } = status.tally;
+        let (dropped, refused) = (self.transcript.dropped(), self.transcript.refused());
         let cpu = format!("{:.2} s", cpu_s());
         tracing::info!(recorded, dropped, refused, files, cpu, "recorded");
-        Ok(summary)
+        Ok(finished(status.problem.is_some() || dropped + refused > 0))
     }
 }
 

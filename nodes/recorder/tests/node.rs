@@ -1,8 +1,5 @@
 //! Tests of the node as a process: messages sent to it are in its file, even if it is killed.
-#![allow(
-    clippy::unwrap_used,
-    reason = "the lint spares test functions but not what they share"
-)]
+#![allow(clippy::unwrap_used, reason = "the lint spares test functions alone")]
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};

@@ -92,26 +92,24 @@ fn node(text: &str) -> Result<String, String> {
 mod tests {
     use super::*;
 
-    fn parse(arguments: &str) -> Result<Config, String> {
-        let words = ["replayer"].into_iter().chain(arguments.split_whitespace());
-        Config::try_parse_from(words).map_err(|error| error.to_string())
-    }
-
     #[test]
     fn what_is_refused_says_what_is_allowed() {
-        let refuse = |arguments: &str, expected: &str| {
-            let text = parse(arguments).unwrap_err();
+        for (arguments, expected) in [
+            ("", "--recording"),
+            ("--recording a --rate 0", "0.001 to 1000, and max"),
+            ("--recording a --patience 0", "0.1 to 3600 seconds"),
+            ("--recording a --start=-1", "0 to 1000000000 seconds"),
+            ("--recording a --remap /f=/scan", "FROM:=TO"),
+            (
+                "--recording a --wait-for b,,c",
+                "0 bytes, allowed are 1 to 32",
+            ),
+            ("--recording a --wait-for replayer", "wait for itself"),
+        ] {
+            let words = ["replayer"].into_iter().chain(arguments.split_whitespace());
+            let outcome = Config::try_parse_from(words);
+            let text = outcome.unwrap_err().to_string();
             assert!(text.contains(expected), "{arguments}: {text}");
-        };
-        refuse("", "--recording");
-        refuse("--recording a --rate 0", "0.001 to 1000, and max");
-        refuse("--recording a --patience 0", "0.1 to 3600 seconds");
-        refuse("--recording a --start=-1", "0 to 1000000000 seconds");
-        refuse("--recording a --remap /f=/scan", "FROM:=TO");
-        refuse(
-            "--recording a --wait-for b,,c",
-            "0 bytes, allowed are 1 to 32",
-        );
-        refuse("--recording a --wait-for replayer", "wait for itself");
+        }
     }
 }

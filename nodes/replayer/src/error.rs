@@ -5,7 +5,6 @@ use std::path::PathBuf;
 use recording::RecordingError;
 use replay::PlaybackError;
 
-/// Error of the node, with the value found and the values allowed.
 #[derive(Debug, thiserror::Error)]
 pub enum ReplayerError {
     #[error(transparent)]

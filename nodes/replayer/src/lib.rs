@@ -10,4 +10,4 @@ mod run;
 
 pub use config::Config;
 pub use error::ReplayerError;
-pub use run::{Summary, run};
+pub use run::run;

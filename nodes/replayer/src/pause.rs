@@ -8,7 +8,6 @@ pub(crate) enum Command {
 }
 
 impl Command {
-    /// Parses a line: `p`, `q`, or anything else for a step.
     pub(crate) fn of(line: &str) -> Self {
         match line.trim() {
             "p" => Command::Toggle,
@@ -71,17 +70,5 @@ mod tests {
         assert!(!pause.is_paused());
         pause.step();
         assert!(pause.is_paused() && pause.may_step());
-    }
-
-    #[test]
-    fn lines_are_commands() {
-        for (line, command) in [
-            ("", Command::Step),
-            ("n\n", Command::Step),
-            (" p\n", Command::Toggle),
-            ("q", Command::Quit),
-        ] {
-            assert_eq!(Command::of(line), command, "{line:?}");
-        }
     }
 }

@@ -4,14 +4,16 @@ mod in_step;
 mod keyboard;
 mod outlet;
 
+use std::process::ExitCode;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
+use command_line::finished;
 use in_step::InStep;
 use keyboard::{KeyPress, Keyboard};
 use messages::{NodeState, topic};
-use outlet::Outlet;
+use outlet::{Outlet, Tally};
 use recording::{Kind, Recording};
 use replay::{
     Action, Channels, InOrder, PlaybackError, Rate, Schedule, Selection, Source, Timed,
@@ -25,31 +27,10 @@ use crate::{Config, ReplayerError};
 /// Longest time between checks of answers, signals and health.
 const TICK: Duration = Duration::from_millis(50);
 
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub struct Summary {
-    /// True if the recording was played to its end; false if the node was stopped.
-    pub finished: bool,
-    pub scans: u64,
-    pub answers: u64,
-    /// Number of scans without an answer.
-    pub unanswered: u64,
-    /// Number of messages that could not be used.
-    pub refused: u64,
-    /// True if the recording is damaged and was played only up to the damage.
-    pub damaged: bool,
-}
-
-impl Summary {
-    /// Returns true if the recording was played to its end but data was lost.
-    pub fn lost_data(&self) -> bool {
-        self.finished && (self.damaged || self.unanswered + self.refused > 0)
-    }
-}
-
 /// Plays the recording until it ends or the stop flag is set.
 ///
 /// A damaged recording is played up to the damage.
-pub fn run(graph: &Graph, config: &Config) -> Result<Summary, ReplayerError> {
+pub fn run(graph: &Graph, config: &Config) -> Result<ExitCode, ReplayerError> {
     let mut outlet = Outlet::open(graph)?;
     let answers = graph.subscriber::<topic::Hypotheses>()?;
     // Reading a long recording takes a while.
@@ -61,7 +42,7 @@ pub fn run(graph: &Graph, config: &Config) -> Result<Summary, ReplayerError> {
     wait_for_nodes(graph, &config.wait_for, &mut outlet.health)?;
     let stop = graph.stop_flag();
     if stop.load(Ordering::Relaxed) {
-        return Ok(Summary::default());
+        return Ok(ExitCode::SUCCESS);
     }
     outlet.first_laser = channels.first_laser();
     let gap_ns = announce(&recording, &channels, config);
@@ -81,6 +62,7 @@ pub fn run(graph: &Graph, config: &Config) -> Result<Summary, ReplayerError> {
         schedule: Schedule::new(config.rate, config.patience),
         in_step: InStep::new(graph, &config.in_step)?,
         outlet,
+        is_finished: false,
         stop,
     };
     player.advance()?;
@@ -171,6 +153,8 @@ struct Player<'r> {
     schedule: Schedule,
     in_step: InStep,
     outlet: Outlet,
+    /// True once the recording was played to its end.
+    is_finished: bool,
     stop: Arc<AtomicBool>,
 }
 
@@ -216,7 +200,7 @@ impl Player<'_> {
                 Action::AwaitAnswer => return Ok(Flow::Continue),
                 Action::GiveUp(stamp) => self.outlet.give_up(stamp, self.config.patience)?,
                 Action::Done => {
-                    self.outlet.summary.finished = true;
+                    self.is_finished = true;
                     return Ok(Flow::Stop);
                 }
             }
@@ -261,7 +245,7 @@ impl Player<'_> {
     /// Starts another round, unless the last one had no scan, in which case it would loop without
     /// end.
     fn starts_over(&mut self) -> bool {
-        let scans = self.outlet.summary.scans;
+        let scans = self.outlet.tally.scans;
         if !self.config.looped || scans == self.scans_before {
             return false;
         }
@@ -272,31 +256,28 @@ impl Player<'_> {
         true
     }
 
-    fn conclude(mut self) -> Result<Summary, ReplayerError> {
-        let mut summary = self.outlet.summary;
-        let Summary {
-            finished,
+    fn conclude(mut self) -> Result<ExitCode, ReplayerError> {
+        let Tally {
             scans,
             answers,
             unanswered,
             refused,
-            damaged: _,
-        } = summary;
-        let how = match finished {
+        } = self.outlet.tally;
+        let how = match self.is_finished {
             true => "played",
             false => "stopped",
         };
         tracing::info!(scans, answers, unanswered, refused, "{how}");
         match self.failure {
-            Some(error) if finished && error.is_damage() => {
+            _ if !self.is_finished => Ok(ExitCode::SUCCESS),
+            Some(error) if error.is_damage() => {
                 let lost = with_causes(&error);
                 tracing::error!("the rest of the recording was lost: {lost}");
                 self.outlet.health.error(&lost)?;
-                summary.damaged = true;
-                Ok(summary)
+                Ok(finished(true))
             }
-            Some(error) if finished => Err(error.into()),
-            _ => Ok(summary),
+            Some(error) => Err(error.into()),
+            None => Ok(finished(unanswered + refused > 0)),
         }
     }
 }

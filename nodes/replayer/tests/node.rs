@@ -1,8 +1,5 @@
 //! Tests of the node as a process; the test takes the part of all other nodes.
-#![allow(
-    clippy::unwrap_used,
-    reason = "the lint spares test functions but not what they share"
-)]
+#![allow(clippy::unwrap_used, reason = "the lint spares test functions alone")]
 
 use std::ffi::OsStr;
 use std::process::ExitStatus;

@@ -7,7 +7,7 @@ use std::process::ExitCode;
 use std::thread;
 
 use anyhow::bail;
-use command_line::{LOST_DATA, output, wrong_use};
+use command_line::{finished, output, wrong_use};
 use progress::say;
 use recording::write::{Packing, RecordingWriter};
 use recording::{Kind, Recording, is_bag, is_stream};
@@ -138,10 +138,7 @@ fn print_report(report: &Report, to: &Path) -> ExitCode {
     }
     let losses = report.losses();
     losses.iter().for_each(|loss| say(loss));
-    match losses.is_empty() {
-        true => ExitCode::SUCCESS,
-        false => ExitCode::from(LOST_DATA),
-    }
+    finished(!losses.is_empty())
 }
 
 fn log_to_recording(config: &Config, to: BufWriter<File>) -> anyhow::Result<Report> {

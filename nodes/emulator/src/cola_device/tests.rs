@@ -4,11 +4,19 @@ use super::*;
 use crate::sweep::five_beams;
 
 fn device() -> ColaDevice {
-    ColaDevice::new(model("LMS111"), Encoding::Binary, &five_beams(1.0))
+    device_of("LMS111")
 }
 
-fn model(name: &str) -> Model {
-    Model::of(Some(KnownDevice::named(name).unwrap()))
+fn device_of(name: &str) -> ColaDevice {
+    let model = Model::of(Some(KnownDevice::named(name).unwrap()));
+    ColaDevice::new(model, Encoding::Binary, &five_beams(1.0))
+}
+
+/// Returns the content of the telegram of the first scan.
+fn written(device: &mut ColaDevice, counter: u64) -> Vec<u8> {
+    let mut bytes = Vec::new();
+    device.write_scan(&five_beams(1.0), 0, counter, 9, &mut bytes);
+    bytes[8..bytes.len() - 1].to_vec()
 }
 
 const LOGIN: Method = Method::SetAccessMode {
@@ -54,34 +62,15 @@ fn what_the_recording_does_not_have_is_refused() {
     let write = Command::Write(Value::OutputRange(range));
     let refused = device.obey(&mut session, &write);
     assert_eq!(refused, Err(Fault::OUT_OF_RANGE));
-    let full = device.full;
-    for (expected, frequency, resolution, start) in [
-        (
-            1,
-            1,
-            full.resolution_raw_1e4_deg,
-            full.start_angle_raw_1e4_deg,
-        ),
-        (
-            2,
-            full.frequency_raw_1e2_hz,
-            5000,
-            full.start_angle_raw_1e4_deg,
-        ),
-        (4, full.frequency_raw_1e2_hz, full.resolution_raw_1e4_deg, 0),
-        (
-            0,
-            full.frequency_raw_1e2_hz,
-            20_000,
-            full.start_angle_raw_1e4_deg,
-        ),
-    ] {
-        let config = ScanConfig {
-            frequency_raw_1e2_hz: frequency,
-            resolution_raw_1e4_deg: resolution,
-            start_angle_raw_1e4_deg: start,
-            ..full
-        };
+    let changes: [(u8, fn(&mut ScanConfig)); 4] = [
+        (1, |config| config.frequency_raw_1e2_hz = 1),
+        (2, |config| config.resolution_raw_1e4_deg = 5000),
+        (4, |config| config.start_angle_raw_1e4_deg = 0),
+        (0, |config| config.resolution_raw_1e4_deg = 20_000),
+    ];
+    for (expected, change) in changes {
+        let mut config = device.full;
+        change(&mut config);
         let set = Command::Call(Method::SetScanConfig(config));
         match device.obey(&mut session, &set) {
             Ok(Answer::ScanConfigSet { status, .. }) => assert_eq!(status, expected),
@@ -106,11 +95,8 @@ fn unknown_names_are_refused_by_kind() {
 
 #[test]
 fn scans_are_rounded_to_the_devices_unit() {
-    let (mut device, sweep) = (device(), five_beams(1.0));
-    let mut content = Vec::new();
-    device.write_scan(&sweep, 0, 65_537, 9, &mut content);
-    let content = &content[8..content.len() - 1];
-    let scan = LmdScanData::read(Encoding::Binary, content).unwrap();
+    let content = written(&mut device(), 65_537);
+    let scan = LmdScanData::read(Encoding::Binary, &content).unwrap();
     let channel = scan.channels_16_bit.named(b"DIST1").unwrap();
     // 70 m needs steps of two millimetres, and a millimetre would be a code.
     assert_eq!(channel.scale_factor, 2.0);
@@ -125,13 +111,9 @@ fn scans_are_rounded_to_the_devices_unit() {
 
 #[test]
 fn other_devices_turn_and_count_otherwise() {
-    let sweep = five_beams(1.0);
     let scan = |name| {
-        let mut device = ColaDevice::new(model(name), Encoding::Binary, &sweep);
-        let mut content = Vec::new();
-        device.write_scan(&sweep, 0, 0, 9, &mut content);
-        let content = &content[8..content.len() - 1];
-        let scan = LmdScanData::read(Encoding::Binary, content).unwrap();
+        let content = written(&mut device_of(name), 0);
+        let scan = LmdScanData::read(Encoding::Binary, &content).unwrap();
         let channel = scan.channels_16_bit.named(b"DIST1").unwrap();
         let values: Vec<u16> = channel.values.collect();
         let unix_us = scan.time.and_then(|time| time.unix_us()).unwrap();

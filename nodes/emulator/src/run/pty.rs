@@ -2,13 +2,14 @@
 
 use std::io::{ErrorKind, Read, Write};
 use std::path::{Path, PathBuf};
+use std::process::ExitCode;
 
 use serialport::{SerialPort, TTYPort};
 use sick::SickError;
 use sick::lms2xx::{Baud, CommandFramer, Reply};
 use transport::monotonic_ns;
 
-use super::{Common, SLICE, Summary, TIMEOUT_NS};
+use super::{Common, SLICE, TIMEOUT_NS};
 use crate::EmulatorError;
 use crate::lms2xx_device::Lms2xxDevice;
 
@@ -21,7 +22,7 @@ const MAX_UNREAD: u32 = 3300;
 /// unread.
 const REST_NS: i64 = 500_000_000;
 
-pub(super) fn run(link: &Path, baud: Baud, common: Common) -> Result<Summary, EmulatorError> {
+pub(super) fn run(link: &Path, baud: Baud, common: Common) -> Result<ExitCode, EmulatorError> {
     let device = Lms2xxDevice::new(baud, &common.sweep)?;
     let mut terminal = Terminal::open(link, device, common)?;
     let mut over_ns = None;

@@ -3,6 +3,7 @@
 use std::io::{ErrorKind, Read, Write};
 use std::net::{SocketAddr, TcpListener, TcpStream};
 use std::os::fd::AsFd;
+use std::process::ExitCode;
 use std::time::Duration;
 
 use nix::errno::Errno;
@@ -11,7 +12,7 @@ use sick::SickError;
 use sick::cola::{Answer, Encoding, Fault, Framer, Telegram};
 use transport::{TransportError, monotonic_ns};
 
-use super::{Common, Summary, TIMEOUT_NS};
+use super::{Common, TIMEOUT_NS};
 use crate::EmulatorError;
 use crate::cola_device::{ColaDevice, Model, Session};
 use crate::faults::Faults;
@@ -24,7 +25,7 @@ pub(super) fn run(
     model: &Model,
     encoding: Encoding,
     mut common: Common,
-) -> Result<Summary, EmulatorError> {
+) -> Result<ExitCode, EmulatorError> {
     let failed = |source| EmulatorError::Listen {
         address: address.into(),
         source,
@@ -138,7 +139,6 @@ struct Client {
     encoding: Encoding,
     framer: Framer,
     session: Session,
-    /// Data not sent yet.
     unsent: Vec<u8>,
     /// True if the client's buffer is full.
     is_full: bool,
@@ -159,7 +159,6 @@ impl Client {
         }
     }
 
-    /// Receives commands and answers them.
     fn receive(&mut self, device: &mut ColaDevice, common: &mut Common, now_ns: i64) {
         let mut piece = [0; 1 << 12];
         loop {
@@ -193,7 +192,6 @@ impl Client {
         }
     }
 
-    /// Sends as much as the client takes.
     fn write(&mut self, faults: &mut Faults, is_over: bool) {
         self.is_full = false;
         if !is_over && faults.holds_back() {

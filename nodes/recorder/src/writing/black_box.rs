@@ -221,7 +221,7 @@ mod tests {
             files: 3,
             bytes: 1 << 20,
         };
-        BlackBox::new(path, keep, capacity_bytes, room, Preamble::empty())
+        BlackBox::new(path, keep, capacity_bytes, room, Preamble::default())
     }
 
     #[test]

@@ -9,12 +9,10 @@ mod parts;
 mod preamble;
 mod staged;
 mod store;
-mod tally;
 #[cfg(test)]
 mod testing;
 
 pub(crate) use black_box::{BlackBox, Room};
 pub(crate) use parts::{Limits, Parts};
 pub(crate) use preamble::Preamble;
-pub(crate) use store::Store;
-pub(crate) use tally::Tally;
+pub(crate) use store::{Store, Tally};

@@ -3,6 +3,7 @@
 use std::fs::File;
 use std::io::Write;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 use std::time::Duration;
 
 use recording::write::{Encoded, Packing, RecordingWriter};
@@ -34,7 +35,7 @@ pub(crate) struct Parts {
 struct Part {
     path: PathBuf,
     writer: RecordingWriter<Staged>,
-    progress: Progress,
+    progress: Arc<Progress>,
     first_ns: Option<i64>,
     flushed: bool,
 }
@@ -107,8 +108,8 @@ impl Parts {
         tracing::info!("recording to {}", path.display());
         let again = file.try_clone().map_err(unsynced(&path))?;
         self.unsynced.push((path.clone(), again));
-        let progress = Progress::default();
-        let sink = Staged::new(file, progress.clone());
+        let progress = Arc::new(Progress::default());
+        let sink = Staged::new(file, Arc::clone(&progress));
         let mut writer = RecordingWriter::new(sink, Packing::Zstd)?;
         self.preamble.write(&mut writer, from_ns)?;
         self.part = Some(Part {
@@ -210,7 +211,7 @@ mod tests {
             waiting_bytes: 1 << 20,
         };
         let path = folder.path().join("r.mcap");
-        Parts::new(path, limits, Preamble::empty()).unwrap()
+        Parts::new(path, limits, Preamble::default()).unwrap()
     }
 
     fn opened(folder: &TempDir, name: &str) -> Recording {

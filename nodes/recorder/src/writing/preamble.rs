@@ -13,7 +13,7 @@ use transport::wall_ns;
 use crate::{Config, RecorderError};
 
 /// Head of a file, and the latched content that each file has to start with.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub(crate) struct Preamble {
     metadata: BTreeMap<String, String>,
     files: Vec<File>,
@@ -46,8 +46,7 @@ impl Preamble {
                 .iter()
                 .map(|path| read(path))
                 .collect::<Result<_, _>>()?,
-            said: BTreeMap::new(),
-            latched: BTreeMap::new(),
+            ..Preamble::default()
         })
     }
 
@@ -109,16 +108,4 @@ fn read(path: &Path) -> Result<File, RecorderError> {
         content,
         read_ns: wall_ns(),
     })
-}
-
-#[cfg(test)]
-impl Preamble {
-    pub(super) fn empty() -> Self {
-        Preamble {
-            metadata: BTreeMap::new(),
-            files: Vec::new(),
-            said: BTreeMap::new(),
-            latched: BTreeMap::new(),
-        }
-    }
 }

@@ -11,29 +11,24 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering};
 
 /// Number of bytes waiting in memory and number in total; shared, because the writer owns the file.
-#[derive(Debug, Clone, Default)]
-pub(super) struct Progress(Arc<Counts>);
-
 #[derive(Debug, Default)]
-struct Counts {
+pub(super) struct Progress {
     waiting: AtomicUsize,
     all: AtomicU64,
 }
 
 impl Progress {
     pub(super) fn waiting(&self) -> usize {
-        self.0.waiting.load(Ordering::Relaxed)
+        self.waiting.load(Ordering::Relaxed)
     }
 
     pub(super) fn all(&self) -> u64 {
-        self.0.all.load(Ordering::Relaxed)
+        self.all.load(Ordering::Relaxed)
     }
 
     fn set(&self, waiting: usize, written: u64) {
-        self.0.waiting.store(waiting, Ordering::Relaxed);
-        self.0
-            .all
-            .store(written + waiting as u64, Ordering::Relaxed);
+        self.waiting.store(waiting, Ordering::Relaxed);
+        self.all.store(written + waiting as u64, Ordering::Relaxed);
     }
 }
 
@@ -44,7 +39,7 @@ pub(super) struct Staged<F = File> {
     step: Vec<u8>,
     /// Position of the next byte, from the start of the file.
     position: u64,
-    progress: Progress,
+    progress: Arc<Progress>,
 }
 
 /// File operations; a trait for tests.
@@ -64,7 +59,7 @@ impl Storage for File {
 }
 
 impl<F: Storage> Staged<F> {
-    pub(super) fn new(file: F, progress: Progress) -> Self {
+    pub(super) fn new(file: F, progress: Arc<Progress>) -> Self {
         Staged {
             file,
             written: 0,
@@ -162,8 +157,8 @@ mod tests {
     fn a_full_disk_keeps_whole_chunks_and_nothing_is_lost_once_there_is_room() {
         let disk = SmallDisk::default();
         disk.room.set(1000);
-        let progress = Progress::default();
-        let sink = Staged::new(disk.clone(), progress.clone());
+        let progress = Arc::new(Progress::default());
+        let sink = Staged::new(disk.clone(), Arc::clone(&progress));
         let mut writer = RecordingWriter::new(sink, Packing::Zstd).unwrap();
         let mut refused = 0;
         for number in 0..100i64 {
@@ -194,7 +189,7 @@ mod tests {
     fn what_is_on_the_disk_is_never_changed() {
         let disk = SmallDisk::default();
         disk.room.set(usize::MAX);
-        let mut staged = Staged::new(disk.clone(), Progress::default());
+        let mut staged = Staged::new(disk.clone(), Arc::default());
         staged.write_all(b"abcd").unwrap();
         staged.seek(SeekFrom::Start(1)).unwrap();
         staged.write_all(b"X").unwrap();

@@ -6,17 +6,25 @@ use messages::{Name, NodeState, ScanHeader, Stamp, topic};
 use replay::{Content, PlaybackError, Poses, Timed};
 use transport::{Graph, Health, Publisher, TransportError, monotonic_ns, with_causes};
 
-use super::Summary;
-
 /// Most beams that lasers have, so that the publisher need not grow for a scan: it gets this room at
 /// the start, of which only what is used takes memory.
 const USUAL_BEAMS: usize = 4096;
+
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct Tally {
+    pub(super) scans: u64,
+    pub(super) answers: u64,
+    /// Number of scans without an answer.
+    pub(super) unanswered: u64,
+    /// Number of messages that could not be used.
+    pub(super) refused: u64,
+}
 
 pub(super) struct Outlet {
     scans: Publisher<topic::Scan>,
     poses: Poses,
     pub(super) health: Health,
-    pub(super) summary: Summary,
+    pub(super) tally: Tally,
     pub(super) first_laser: Name,
     /// Number of scans sent, by the name of each further laser.
     others: BTreeMap<String, u64>,
@@ -28,7 +36,7 @@ impl Outlet {
             scans: graph.publisher_for(USUAL_BEAMS)?,
             poses: Poses::open(graph)?,
             health: graph.health()?,
-            summary: Summary::default(),
+            tally: Tally::default(),
             first_laser: Name::new(""),
             others: BTreeMap::new(),
         })
@@ -58,7 +66,7 @@ impl Outlet {
         // Each laser counts its own scans, and those of the first one are answered.
         let is_first = header.laser == self.first_laser;
         let count = match is_first {
-            true => &mut self.summary.scans,
+            true => &mut self.tally.scans,
             false => self.others.entry(header.laser.to_string()).or_default(),
         };
         header.stamp.counter = *count;
@@ -70,21 +78,19 @@ impl Outlet {
     }
 
     pub(super) fn count_answer(&mut self) -> Result<(), TransportError> {
-        self.summary.answers += 1;
+        self.tally.answers += 1;
         self.health.count_received(1);
         self.health.state(NodeState::Ready)
     }
 
-    /// Counts and reports a message that cannot be used.
     pub(super) fn refuse(&mut self, error: &PlaybackError) -> Result<(), TransportError> {
-        self.summary.refused += 1;
+        self.tally.refused += 1;
         self.health.count_refused(1);
         self.complain(&with_causes(error))
     }
 
-    /// Counts and reports a scan without an answer.
     pub(super) fn give_up(&mut self, stamp: Stamp, patience_s: f64) -> Result<(), TransportError> {
-        self.summary.unanswered += 1;
+        self.tally.unanswered += 1;
         self.health.count_dropped(1);
         let (counter, measured_ns) = (stamp.counter, stamp.measured_ns);
         self.complain(&format!(
