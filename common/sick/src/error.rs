@@ -9,20 +9,17 @@ use std::ops::RangeInclusive;
 /// the first byte of the telegram or of the field.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum SickError {
-    /// Bytes between two CoLa B telegrams belong to neither.
     #[error(
         "byte {offset} of the stream: found {found:02x?} where a CoLa B telegram starts with \
          02 02 02 02{}", hint(*found)
     )]
     NoStart { offset: u64, found: [u8; 4] },
-    /// Bytes between two other telegrams belong to neither.
     #[error("byte {offset} of the stream: found {found:#04x} where {expected}")]
     NoTelegram {
         offset: u64,
         found: u8,
         expected: &'static str,
     },
-    /// A telegram claims an impossible length of its content or payload.
     #[error(
         "byte {offset} of the stream: the telegram claims {found} bytes of {part}, allowed are \
          {} to {}", allowed.start(), allowed.end()
@@ -33,18 +30,15 @@ pub enum SickError {
         part: &'static str,
         allowed: RangeInclusive<usize>,
     },
-    /// A CoLa A telegram does not end within the longest length accepted.
     #[error(
         "byte {offset} of the stream: a telegram without an end (03) in {MAX_TEXT} bytes",
         MAX_TEXT = crate::cola::cola_a::MAX_CONTENT
     )]
     Endless { offset: u64 },
-    /// Another telegram starts before a CoLa A telegram has ended.
     #[error(
         "byte {offset} of the stream: a telegram is cut off by another one after {present} bytes"
     )]
     CutOff { offset: u64, present: usize },
-    /// The content does not start with a command.
     #[error(
         "byte {offset} of the stream: the content starts with {found:#04x}, every command with \
          's' (0x73)"
@@ -64,10 +58,8 @@ pub enum SickError {
     /// The checksum is right, but the content does not fit its command.
     #[error("byte {offset} of the stream: a telegram cannot be read: {reason}")]
     Unreadable { offset: u64, reason: Box<SickError> },
-    /// The stream ends inside a telegram.
     #[error("byte {offset} of the stream: it ends {present} bytes into a telegram")]
     Truncated { offset: u64, present: usize },
-    /// The content ends before a field does.
     #[error(
         "byte {offset} of the telegram: `{field}` takes {needed} bytes, {left} are left of the \
          content"
@@ -78,7 +70,6 @@ pub enum SickError {
         needed: usize,
         left: usize,
     },
-    /// A field has an invalid value.
     #[error("byte {offset} of the telegram: `{field}` is {found}, allowed is {allowed}")]
     Field {
         field: &'static str,
@@ -86,7 +77,6 @@ pub enum SickError {
         found: String,
         allowed: &'static str,
     },
-    /// The content continues after the last field.
     #[error("byte {offset} of the telegram: {left} bytes follow the last field, none may")]
     Trailing { offset: usize, left: usize },
 }

@@ -9,7 +9,6 @@ use crate::SickError;
 
 /// Rules that distinguish telegrams of one kind from other bytes.
 pub trait Protocol {
-    /// Parsed content of a telegram.
     type Telegram<'a>;
 
     /// Processes each new piece of the stream, once.
@@ -50,11 +49,8 @@ pub struct Pending<'a> {
 pub enum Judgement {
     /// A telegram; its bytes before, of and after the content.
     Frame {
-        /// Bytes before the content.
         prefix: usize,
-        /// Bytes of content.
         length: usize,
-        /// Bytes after the content.
         suffix: usize,
     },
     Incomplete,
@@ -66,7 +62,6 @@ pub enum Judgement {
 pub struct Frame<'a, T> {
     /// Offset of its first byte in the stream.
     pub offset: u64,
-    /// Content without the framing.
     pub content: &'a [u8],
     pub telegram: T,
     /// Number of bytes since the previous telegram that belong to no telegram.
@@ -90,7 +85,6 @@ pub struct Framer<P> {
 }
 
 impl<P: Protocol> Framer<P> {
-    /// Creates a framer at the start of a stream.
     pub fn of(protocol: P) -> Self {
         Framer {
             protocol,
@@ -103,7 +97,6 @@ impl<P: Protocol> Framer<P> {
         }
     }
 
-    /// Appends the next piece of the stream.
     pub fn push(&mut self, piece: &[u8]) {
         self.release();
         self.bytes.extend_from_slice(piece);

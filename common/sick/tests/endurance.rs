@@ -1,10 +1,7 @@
 //! A million telegrams of each format with faults between them: accepted scans are correct, no
 //! memory accumulates, a fault costs no more than its own telegram, and valid streams allocate
 //! nothing.
-#![allow(
-    clippy::unwrap_used,
-    reason = "the lint spares test functions but not what they share"
-)]
+#![allow(clippy::unwrap_used, reason = "the lint spares test functions alone")]
 
 use allocation_counter::measure;
 use rand::rngs::Xoshiro256PlusPlus;

@@ -1,9 +1,6 @@
 //! Tests the codec against telegrams of a real TiM781 and their decoded fields
 //! (tests/data/SOURCE.txt).
-#![allow(
-    clippy::unwrap_used,
-    reason = "the lint spares test functions but not what they share"
-)]
+#![allow(clippy::unwrap_used, reason = "the lint spares test functions alone")]
 
 use serde_json::Value;
 use sick::Frame;
@@ -68,7 +65,7 @@ fn check_channels(data: &LmdScanData<'_>, expected: &[Value]) {
         let degrees = |raw: f64| raw / 1e4;
         assert_eq!(degrees(channel.start_angle_raw_1e4_deg.into()), expected[3]);
         assert_eq!(degrees(channel.step_raw_1e4_deg.into()), expected[4]);
-        assert_eq!(channel.len() as u64, expected[5].as_u64().unwrap());
+        assert_eq!(channel.values.len() as u64, expected[5].as_u64().unwrap());
         let least = channel.values.min().map(u64::from);
         let most = channel.values.max().map(u64::from);
         assert_eq!((least, most), (expected[6].as_u64(), expected[7].as_u64()));

@@ -65,7 +65,6 @@ impl<'a> Answer<'a> {
         Ok(Answer::Fault(Fault(fault)))
     }
 
-    /// Appends the content of the telegram.
     pub fn write(&self, encoding: Encoding, out: &mut Vec<u8>) {
         match self {
             Answer::Value(value) => {

@@ -5,6 +5,10 @@ use super::writer::Writer;
 use crate::SickError;
 use crate::cursor::{Cursor, field_error};
 
+/// Smallest raw distance; lower values are codes: 0 no return, 1 dazzled, 2 implausible, the others
+/// reserved (SICK's operating instructions, "LMDscandata – reserved values").
+pub const FIRST_DISTANCE: u16 = 16;
+
 /// Values over equally spaced angles.
 ///
 /// | bytes | field | |
@@ -18,15 +22,12 @@ use crate::cursor::{Cursor, field_error};
 /// | count · width | values | u16 or u8 |
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Channel<'a> {
-    /// Kind of the values.
     pub name: [u8; 5],
     /// Factor for the raw value; distances are then in millimetres.
     pub scale_factor: f32,
-    /// Offset added after scaling.
     pub scale_offset: f32,
     /// Angle of the first value, in the device's convention.
     pub start_angle_raw_1e4_deg: i32,
-    /// Angle between consecutive values.
     pub step_raw_1e4_deg: u16,
     /// Values by increasing angle; at most 65535 can be sent.
     pub values: Values<'a>,
@@ -68,12 +69,12 @@ impl<'a> Channel<'a> {
         self.values.write(writer, width);
     }
 
-    pub fn len(&self) -> usize {
-        self.values.len()
-    }
-
-    pub fn is_empty(&self) -> bool {
-        self.len() == 0
+    /// Returns the distances in metres; `None` for a code in place of a distance.
+    pub fn distances_m(&self) -> impl Iterator<Item = Option<f64>> {
+        let (scale, offset) = (f64::from(self.scale_factor), f64::from(self.scale_offset));
+        self.values.map(move |raw| {
+            (raw >= FIRST_DISTANCE).then(|| (f64::from(raw) * scale + offset) * 1e-3)
+        })
     }
 }
 
@@ -124,7 +125,6 @@ impl<'a> Channels<'a> {
         }
     }
 
-    /// Returns the channel with this name.
     pub fn named(&self, name: &[u8; 5]) -> Option<Channel<'a>> {
         self.clone().find(|channel| &channel.name == name)
     }

@@ -13,14 +13,12 @@
 use crate::SickError;
 use crate::framer::{Judgement, Pending};
 
-/// Bytes that start every telegram.
 const START: [u8; 4] = [2; 4];
 /// Length of the shortest content: a command of three letters.
 const MIN_CONTENT: usize = 3;
 /// Longest content accepted. Five echoes with distance and remission at the finest resolution of
 /// the LMS5xx take about 23 kB.
 pub(super) const MAX_CONTENT: usize = 1 << 17;
-/// Number of bytes before the content: start and length.
 const PREFIX: usize = 8;
 
 /// Appends a telegram; `write` appends its content.
@@ -54,7 +52,6 @@ impl Parity {
         }));
     }
 
-    /// Drops the first `count` bytes.
     pub(super) fn release(&mut self, count: usize) {
         self.0.drain(..count);
     }

@@ -102,7 +102,6 @@ impl<'a> Command<'a> {
         })
     }
 
-    /// Appends the content of the telegram.
     pub fn write(&self, encoding: Encoding, out: &mut Vec<u8>) {
         match self {
             Command::Read(variable) => Writer::bare(b"sRN", variable.name().as_bytes(), out),

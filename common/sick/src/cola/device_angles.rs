@@ -72,31 +72,23 @@ impl DeviceAngles {
 /// Reason why the convention of a device is unknown.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum ConventionError {
-    /// The device reported no name, and its field is not centred as usual.
     #[error(
         "which way the laser looks is not known: its name was not read, and its field, {field}, \
          is not centred on 90°, which is ahead on most SICK lasers; {}",
         remedy()
     )]
     Unnamed { field: Field },
-    /// The name is not in the table, and the field is not centred as usual.
     #[error(
         "which way the laser looks is not known: {name} is not in the table, and its field, \
          {field}, is not centred on 90°, which is ahead on most SICK lasers; {}",
         remedy()
     )]
-    Unknown {
-        /// Name that the device reports.
-        name: String,
-        field: Field,
-    },
-    /// The sources for a device contradict each other.
+    Unknown { name: String, field: Field },
     #[error(
         "which way a {row} looks is not known: the sources differ ({sources}); {}",
         turned()
     )]
     Disputed {
-        /// Name of the device's row in the table.
         row: &'static str,
         /// The contradicting statements and where they are found.
         sources: &'static str,
@@ -174,12 +166,5 @@ mod tests {
         assert!(error.to_string().contains("--zero-deg"), "{error}");
         assert!(!error.to_string().contains("--device"), "{error}");
         assert_eq!(nav.certain(), None);
-    }
-
-    #[test]
-    fn far_devices_reach_farther() {
-        assert_eq!(DeviceAngles::of_name(b"NAV310").reach_m(), 250.0);
-        assert_eq!(DeviceAngles::of_name(b"LMS511").reach_m(), 80.0);
-        assert_eq!(DeviceAngles::Unnamed.reach_m(), 80.0);
     }
 }

@@ -47,7 +47,6 @@ impl Fault {
     pub const UNKNOWN_COMMAND: Fault = Fault(0xc);
     pub const UNKNOWN_EVENT: Fault = Fault(0xf);
 
-    /// Returns the meaning according to SICK's listing.
     pub fn meaning(self) -> &'static str {
         let meaning = MEANINGS.get(usize::from(self.0));
         meaning.copied().unwrap_or("not in SICK's listing")

@@ -30,7 +30,6 @@ const LAYOUT: &str =
     "sick_scan_xd, configureAngleParameters in driver/src/sick_lmd_scandata_parser.cpp";
 
 impl KnownDevice {
-    /// All rows of the table.
     pub const ALL: [KnownDevice; 17] = [
         usual("LMS1xx", "LMS1##", DRIVER),
         usual("LMS5xx", "LMS5##", DRIVER),

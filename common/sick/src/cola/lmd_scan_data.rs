@@ -77,7 +77,6 @@ pub struct LmdScanData<'a> {
 }
 
 impl<'a> LmdScanData<'a> {
-    /// Parses the whole content of a telegram.
     pub fn read(encoding: Encoding, content: &'a [u8]) -> Result<Self, SickError> {
         let mut whole = Cursor::new(Encoding::Binary, content, 0);
         let command = whole.take("command and name", COMMAND)?;
@@ -94,7 +93,6 @@ impl<'a> LmdScanData<'a> {
         LmdScanData::read_fields(&mut Cursor::new(encoding, fields, COMMAND))
     }
 
-    /// Returns true if the content begins like a scan.
     pub(super) fn is_in(content: &[u8]) -> bool {
         content.starts_with(b"sSN LMDscandata ") || content.starts_with(b"sRA LMDscandata ")
     }

@@ -37,7 +37,7 @@ mod writer;
 
 pub use angle_convention::{AngleConvention, Field, sweep_us};
 pub use answer::Answer;
-pub use channel::{Channel, Channels};
+pub use channel::{Channel, Channels, FIRST_DISTANCE};
 pub use command::{AUTHORIZED_CLIENT, Command, Method, PASSWORD_AUTHORIZED_CLIENT};
 pub use device_angles::{ConventionError, DeviceAngles};
 pub use encoding::Encoding;

@@ -13,11 +13,9 @@ use crate::cursor::Cursor;
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct ScanConfig {
     pub frequency_raw_1e2_hz: u32,
-    /// Angle between consecutive beams.
     pub resolution_raw_1e4_deg: u32,
     /// Angle of the first beam, in the device's convention (90° is ahead).
     pub start_angle_raw_1e4_deg: i32,
-    /// Angle of the last beam.
     pub stop_angle_raw_1e4_deg: i32,
 }
 
@@ -31,11 +29,9 @@ pub struct ScanConfig {
 /// | 4 | stop angle | i32, 1/10000° |
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct OutputRange {
-    /// Angle between consecutive beams.
     pub resolution_raw_1e4_deg: u32,
     /// Angle of the first beam, in the device's convention (90° is ahead).
     pub start_angle_raw_1e4_deg: i32,
-    /// Angle of the last beam.
     pub stop_angle_raw_1e4_deg: i32,
 }
 

@@ -26,7 +26,6 @@ pub struct Cola {
 pub type Framer = framer::Framer<Cola>;
 
 impl Framer {
-    /// Creates a framer at the start of a stream in this encoding.
     pub fn new(encoding: Encoding) -> Self {
         Framer::of(Cola {
             encoding,

@@ -43,7 +43,6 @@ impl<'a> Telegram<'a> {
         Ok(answer.map_or(Telegram::Other(content), Telegram::Answer))
     }
 
-    /// Appends the content of the telegram.
     pub fn write(&self, encoding: Encoding, out: &mut Vec<u8>) {
         match self {
             Telegram::ScanData(data) => data.write(encoding, out),

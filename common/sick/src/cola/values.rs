@@ -15,7 +15,6 @@ pub struct Values<'a> {
 enum Place<'a> {
     BigEndian(&'a [u8]),
     LittleEndian(&'a [u8]),
-    /// One byte each.
     Narrow(&'a [u8]),
     /// Words that have been validated, each a number of this many bits.
     Words(Cursor<'a>, u32),

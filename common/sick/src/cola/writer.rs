@@ -1,5 +1,7 @@
 //! Appends fields to a content, in either encoding; the counterpart of `Cursor`.
 
+use std::io::Write;
+
 use super::Encoding;
 
 #[derive(Debug)]
@@ -37,15 +39,8 @@ impl<'a> Writer<'a> {
     }
 
     fn word(&mut self, value: u32) {
-        self.out.push(b' ');
-        let digits = (32 - value.leading_zeros()).div_ceil(4).max(1);
-        for digit in (0..digits).rev() {
-            let digit = (value >> (4 * digit) & 0xf) as u8;
-            self.out.push(match digit {
-                0..10 => b'0' + digit,
-                _ => b'A' + digit - 10,
-            });
-        }
+        // Writing to memory cannot fail.
+        let _ = write!(self.out, " {value:X}");
     }
 
     pub(crate) fn u8(&mut self, value: u8) {

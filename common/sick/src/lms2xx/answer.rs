@@ -34,7 +34,6 @@ pub enum Answer<'a> {
     Type(&'a [u8]),
     /// `BB`: u8, 1 if field and resolution were changed, then the values in force.
     VariantSet {
-        /// True if the change was made.
         done: bool,
         /// Width of the field: 100 or 180.
         width_deg: u16,
@@ -45,7 +44,6 @@ pub enum Answer<'a> {
     Configuration(Configuration),
     /// `F7`: u8, 1 if the configuration was changed, then the one in force.
     ConfigurationSet {
-        /// True if the change was made.
         done: bool,
         configuration: Configuration,
     },
@@ -162,7 +160,7 @@ fn done(fields: &mut Cursor<'_>) -> Result<bool, SickError> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::lms2xx::{Part, RangeMode, ReplyFramer, Unit};
+    use crate::lms2xx::{RangeMode, ReplyFramer, Unit};
 
     fn framed(reply: &Reply<'_>) -> Vec<u8> {
         let mut out = Vec::new();
@@ -183,12 +181,12 @@ mod tests {
             Answer::ModeSet(1),
             Answer::Scan(scan(&readings)),
             Answer::Scan(Scan {
-                part: Part::at_quarter(0),
+                part: Some(0),
                 ..scan(&readings)
             }),
             Answer::Scan(Scan {
                 unit: Unit::Centimetre,
-                part: Part::at_quarter(3),
+                part: Some(3),
                 sub_range: Some((2, 5)),
                 counters: Some((255, 0)),
                 ..scan(&readings)
@@ -233,10 +231,7 @@ mod tests {
         let Ok(Reply::Answer(Answer::Scan(scan), status)) = Reply::read(&payload) else {
             panic!("no scan");
         };
-        assert_eq!(
-            (scan.unit, scan.part),
-            (Unit::Millimetre, Part::at_quarter(3))
-        );
+        assert_eq!((scan.unit, scan.part), (Unit::Millimetre, Some(3)));
         assert_eq!(scan.readings.collect::<Vec<_>>(), [1, 0x2002]);
         assert!(status.is_in_order() && scan.counters.is_none());
     }

@@ -54,7 +54,6 @@ pub enum Mode {
     Other(u8),
 }
 
-/// Baud rate that the device supports.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Baud {
     /// 9600, the rate after power-on.
@@ -79,7 +78,6 @@ impl Baud {
         }
     }
 
-    /// Returns the baud rate with this many bits per second.
     pub fn from_rate(rate: u32) -> Option<Self> {
         Self::ALL.into_iter().find(|baud| baud.rate() == rate)
     }
@@ -104,7 +102,6 @@ impl FromStr for Baud {
 }
 
 impl Mode {
-    /// Returns the code used in telegrams.
     pub const fn code(self) -> u8 {
         match self {
             Mode::Installation { .. } => 0x00,

@@ -36,6 +36,6 @@ pub use command::{Baud, Command, DEFAULT_PASSWORD, Mode};
 pub use configuration::Configuration;
 pub use partial::PartialScans;
 pub use range_mode::{RangeMode, Unit};
-pub use scan::{Part, Scan};
+pub use scan::Scan;
 pub use status::{DeviceStatus, Status};
 pub use stream::{CommandFramer, FromDevice, FromHost, ReplyFramer};

@@ -13,7 +13,6 @@ pub struct PartialScans {
     /// Index of the next part expected.
     next: usize,
     readings: Vec<u16>,
-    dropped: u64,
 }
 
 impl PartialScans {
@@ -32,21 +31,18 @@ impl PartialScans {
             parts,
             next: 0,
             readings: vec![0; width_deg * parts + 1],
-            dropped: 0,
         })
     }
 
     /// Adds a part; returns the readings of the whole scan after the last one.
     pub fn add(&mut self, scan: &Scan<'_>) -> Option<&[u16]> {
-        let step = usize::from(scan.part?.quarter()) * self.parts;
+        let step = usize::from(scan.part?) * self.parts;
         let part = step / 4;
         let expected = self.width_deg + usize::from(part == 0);
         if part == 0 {
-            self.dropped += self.next as u64;
             self.next = 0;
         }
         if !step.is_multiple_of(4) || part != self.next || scan.readings.len() != expected {
-            self.dropped += 1 + self.next as u64;
             self.next = 0;
             return None;
         }
@@ -61,17 +57,12 @@ impl PartialScans {
         self.next = 0;
         Some(&self.readings)
     }
-
-    /// Returns the number of parts that belonged to no complete scan.
-    pub fn dropped(&self) -> u64 {
-        self.dropped
-    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::lms2xx::{Part, Unit};
+    use crate::lms2xx::Unit;
 
     /// Adds the part of this quarter; each reading is its own index in the whole scan.
     fn add(scans: &mut PartialScans, quarter: u8, parts: u16) -> Option<Vec<u16>> {
@@ -79,7 +70,7 @@ mod tests {
         let count = if quarter == 0 { 101 } else { 100 };
         let readings: Vec<u16> = (0..count).map(|degree| degree * parts + first).collect();
         let scan = Scan {
-            part: Part::at_quarter(quarter),
+            part: Some(quarter),
             ..Scan::new(Unit::Centimetre, &readings)
         };
         scans.add(&scan).map(<[u16]>::to_vec)
@@ -96,7 +87,6 @@ mod tests {
             }
             let whole = add(&mut scans, last, parts).unwrap();
             assert_eq!(whole, (0..=100 * parts).collect::<Vec<_>>());
-            assert_eq!(scans.dropped(), 0);
         }
         assert!(PartialScans::new(100, 33).is_none());
     }
@@ -108,10 +98,8 @@ mod tests {
             assert_eq!(add(&mut scans, quarter, 4), None);
         }
         assert!(add(&mut scans, 3, 4).is_some());
-        assert_eq!(scans.dropped(), 3);
         // A scan at half a degree has no part at a quarter.
         let mut scans = PartialScans::new(100, 50).unwrap();
         assert_eq!(add(&mut scans, 1, 2), None);
-        assert_eq!(scans.dropped(), 1);
     }
 }

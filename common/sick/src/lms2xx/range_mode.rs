@@ -25,7 +25,6 @@ impl Unit {
         }
     }
 
-    /// Returns the length of the unit in metres.
     pub const fn metres(self) -> f64 {
         match self {
             Unit::Centimetre => 0.01,

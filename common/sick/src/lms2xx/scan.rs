@@ -22,8 +22,8 @@ const IS_PARTIAL: u16 = 1 << 13;
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Scan<'a> {
     pub unit: Unit,
-    /// Part of a scan, if it is a partial scan.
-    pub part: Option<Part>,
+    /// Start of a partial scan, which has one value per degree: 0 to 3 quarters of a degree.
+    pub part: Option<u8>,
     /// First and last value requested, from 1.
     pub sub_range: Option<(u16, u16)>,
     /// Readings, right to left; at most 401 fit into a telegram.
@@ -32,28 +32,7 @@ pub struct Scan<'a> {
     pub counters: Option<(u8, u8)>,
 }
 
-/// Part of a scan with one value per degree, starting at this many quarters of a degree.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Part(u8);
-
-impl Part {
-    /// Returns the part that starts at 0 to 3 quarters of a degree.
-    pub const fn at_quarter(quarter: u8) -> Option<Self> {
-        if quarter < 4 {
-            Some(Part(quarter))
-        } else {
-            None
-        }
-    }
-
-    /// Returns the start in quarters of a degree.
-    pub const fn quarter(self) -> u8 {
-        self.0
-    }
-}
-
 impl<'a> Scan<'a> {
-    /// Returns a whole scan of these readings.
     pub fn new(unit: Unit, readings: &'a [u16]) -> Self {
         Scan {
             unit,
@@ -87,7 +66,7 @@ impl<'a> Scan<'a> {
         };
         Ok(Scan {
             unit,
-            part: (head & IS_PARTIAL != 0).then_some(Part((head >> 11 & 3) as u8)),
+            part: (head & IS_PARTIAL != 0).then_some((head >> 11 & 3) as u8),
             sub_range,
             readings: Values::little_endian(readings),
             counters,
@@ -102,7 +81,7 @@ impl<'a> Scan<'a> {
         }
         let part = self
             .part
-            .map_or(0, |part| IS_PARTIAL | u16::from(part.quarter()) << 11);
+            .map_or(0, |quarter| IS_PARTIAL | u16::from(quarter & 3) << 11);
         let count = self.readings.len() as u16 & COUNT;
         u16(count | part | u16::from(self.unit.code()) << 14);
         self.readings.for_each(u16);

@@ -20,12 +20,10 @@ impl Status {
         self.0 & 7
     }
 
-    /// Returns true if measured values are implausible.
     pub const fn is_implausible(self) -> bool {
         self.0 & 1 << 6 != 0
     }
 
-    /// Returns true if the window is dirty.
     pub const fn is_polluted(self) -> bool {
         self.0 & 1 << 7 != 0
     }

@@ -19,8 +19,6 @@ const PORTS: [u16; 2] = [2112, 2111];
 const TIMEOUT: Duration = Duration::from_secs(1);
 /// Longest wait for a scan, several times its period at 5 Hz.
 const SCAN_TIMEOUT: Duration = Duration::from_secs(3);
-/// Lowest reading that is a distance; lower ones are codes.
-const FIRST_DISTANCE: u16 = 16;
 
 struct Device {
     address: String,
@@ -183,7 +181,7 @@ impl Device {
             };
             let channel = scan.channels_16_bit.named(b"DIST1")?;
             let (looks, convention, up) = in_which_way(&angles, Field::of(&channel));
-            let (count, seen) = (channel.len(), seen(&channel, convention, up));
+            let (count, seen) = (channel.values.len(), seen(&channel, convention, up));
             let returns = seen.points.len();
             let about = format!("a scan of {count} readings, {returns} with a return");
             Some((vec![looks, about], seen))
@@ -216,14 +214,14 @@ fn in_which_way(angles: &DeviceAngles, field: Field) -> (String, AngleConvention
 }
 
 fn seen(channel: &Channel<'_>, convention: AngleConvention, up: String) -> Seen {
-    let scale = f64::from(channel.scale_factor);
-    let offset = f64::from(channel.scale_offset);
-    let points = channel.values.enumerate().filter_map(|(beam, raw)| {
-        let step_deg = f64::from(channel.step_raw_1e4_deg) * 1e-4;
-        let deg = f64::from(channel.start_angle_raw_1e4_deg) * 1e-4 + beam as f64 * step_deg;
-        let range = (f64::from(raw) * scale + offset) * 1e-3;
-        (raw >= FIRST_DISTANCE).then_some((convention.bearing_deg(deg).to_radians(), range))
-    });
+    let points = channel
+        .distances_m()
+        .enumerate()
+        .filter_map(|(beam, metres)| {
+            let step_deg = f64::from(channel.step_raw_1e4_deg) * 1e-4;
+            let deg = f64::from(channel.start_angle_raw_1e4_deg) * 1e-4 + beam as f64 * step_deg;
+            Some((convention.bearing_deg(deg).to_radians(), metres?))
+        });
     Seen {
         points: points.collect(),
         up,
