@@ -6,18 +6,13 @@
 use std::error::Error;
 
 use messages::{HealthHeader, NodeState};
-use transport::{Health, TransportError, monotonic_ns, with_causes};
-
-/// Shortest time between two logged rejections, in nanoseconds.
-const QUIET_NS: i64 = 1_000_000_000;
+use transport::{ErrorLimit, Health, TransportError, monotonic_ns, with_causes};
 
 /// Counts messages and reports problems.
 #[derive(Debug)]
 pub struct Report {
     health: Health,
-    said_ns: i64,
-    /// Rejections counted but not logged.
-    unsaid: u64,
+    error_limit: ErrorLimit,
     /// Text for what is waited for; `None` if everything needed is there.
     waiting: Option<String>,
     /// True if this text is the last error in health.
@@ -30,8 +25,7 @@ impl Report {
     pub fn new(health: Health) -> Self {
         Report {
             health,
-            said_ns: i64::MIN / 2,
-            unsaid: 0,
+            error_limit: ErrorLimit::default(),
             waiting: Some(String::new()),
             is_said: false,
             is_map_refused: false,
@@ -115,13 +109,9 @@ impl Report {
     /// Counts a rejected message, and logs it unless one was logged just before.
     pub fn refused(&mut self, error: &(dyn Error + 'static)) -> Result<(), TransportError> {
         self.health.count_refused(1);
-        let now_ns = monotonic_ns();
-        if now_ns - self.said_ns < QUIET_NS {
-            self.unsaid += 1;
+        let Some(unsaid) = self.error_limit.note(monotonic_ns()) else {
             return Ok(());
-        }
-        let unsaid = std::mem::take(&mut self.unsaid);
-        self.said_ns = now_ns;
+        };
         // Remote senders influence the text, too.
         let mut problem = with_causes(error);
         problem.truncate(problem.floor_char_boundary(HealthHeader::ERROR_CAPACITY));

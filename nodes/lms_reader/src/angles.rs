@@ -5,7 +5,6 @@
 
 use sick::cola::{AngleConvention, ConventionError, DeviceAngles, Field};
 
-/// Angle convention of the connected device.
 #[derive(Debug, Default)]
 pub(crate) struct Angles {
     /// Statement of the configuration, which takes precedence over the reported name.
@@ -22,7 +21,6 @@ impl Angles {
         }
     }
 
-    /// Records the name that the device reports.
     pub(crate) fn on_name(&mut self, name: &[u8]) {
         let read = DeviceAngles::of_name(name);
         if read != self.read {

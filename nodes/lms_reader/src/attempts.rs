@@ -9,13 +9,10 @@ pub(crate) struct Attempts {
     count: u32,
 }
 
-/// Next step with a command.
 #[derive(Debug, PartialEq, Eq)]
 pub(crate) enum Attempt {
     Send,
-    /// Wait: the answer may still arrive.
     Wait,
-    /// Give up: the command has been sent often enough.
     GiveUp,
 }
 

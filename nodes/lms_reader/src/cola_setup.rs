@@ -70,7 +70,6 @@ pub(crate) struct Setup {
     ahead_raw: Option<i32>,
     steps: VecDeque<Step>,
     attempts: Attempts,
-    /// Scan configuration that the device reported.
     scan: Option<ScanConfig>,
     range: Option<OutputRange>,
     contents: Option<ScanDataConfig>,
@@ -263,7 +262,6 @@ impl Setup {
         }
     }
 
-    /// Returns true once the dialogue is complete.
     pub(crate) fn is_done(&self) -> bool {
         self.steps.is_empty()
     }

@@ -133,7 +133,6 @@ pub struct Reach {
     pub unit: Unit,
 }
 
-/// Playback speed of a capture.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub enum Rate {
     /// At the device's own pace, by its time stamps.
@@ -143,7 +142,6 @@ pub enum Rate {
 }
 
 impl Config {
-    /// Parses the command line; exits with code 2 if it is invalid.
     pub fn from_command_line() -> Self {
         command_line::parse(Config::check)
     }
@@ -193,9 +191,7 @@ impl Config {
             stamps: self.stamps,
         }
     }
-}
 
-impl Config {
     /// Returns the angle convention stated by the options, if any.
     pub fn stated_angles(&self) -> Option<DeviceAngles> {
         let stated = self.zero_deg.map(|ahead_deg| {

@@ -7,46 +7,31 @@ use std::path::PathBuf;
 
 use sick::cola::Fault;
 
-/// Error of the node, with the value found and the values allowed.
 #[derive(Debug, thiserror::Error)]
 pub enum LmsError {
     /// The device sent bytes that are no telegram, or a damaged one.
     #[error(transparent)]
     Telegram(#[from] sick::SickError),
     #[error("the telegram has the 16-bit channels [{found}], a scan needs DIST1")]
-    NoDistances {
-        /// Names of the channels found.
-        found: String,
-    },
-    /// The distances cannot be converted to a scan.
+    NoDistances { found: String },
     #[error("`{field}` of channel DIST1 is {found}, allowed is {allowed}")]
     Scan {
         field: &'static str,
         found: f64,
         allowed: &'static str,
     },
-    /// The angle convention of the device is unknown.
     #[error(transparent)]
     Convention(#[from] sick::cola::ConventionError),
-    /// The readings of an LMS2xx cannot be converted to a scan.
     #[error("the device sent {found} readings, {expected} are {field}")]
     Readings {
         found: usize,
         expected: usize,
-        /// Description of the field and resolution.
         field: String,
     },
     #[error("the telegram does not say the date and time of the scan (--stamps device): {found}")]
-    NoTime {
-        /// Time found instead.
-        found: String,
-    },
+    NoTime { found: String },
     #[error("the device rejects {command} with CoLa error {fault}")]
-    Fault {
-        command: String,
-        /// Error code in the answer.
-        fault: Fault,
-    },
+    Fault { command: String, fault: Fault },
     #[error("the device did not {what}: it answers {found}, expected is {expected}")]
     Refused {
         what: &'static str,
@@ -54,11 +39,7 @@ pub enum LmsError {
         expected: String,
     },
     #[error("the device did not answer {command}, sent {tries} times")]
-    NoAnswer {
-        command: String,
-        /// Number of times that it was sent.
-        tries: u32,
-    },
+    NoAnswer { command: String, tries: u32 },
     #[error("no answer at any baud rate ({}); check power, wiring and that no other program uses the port", rates.iter().map(u32::to_string).collect::<Vec<_>>().join(", "))]
     NoBaud { rates: Vec<u32> },
     /// The device restarted and has to be set up again.
@@ -69,10 +50,7 @@ pub enum LmsError {
         "the device reports status {} {} (0 0 is in order, 0 1 an error, 0 2 a dirty window, \
          0 4 and 0 5 one that is too dirty)", found[0], found[1]
     )]
-    DeviceStatus {
-        /// Both status bytes.
-        found: [u8; 2],
-    },
+    DeviceStatus { found: [u8; 2] },
     /// An LMS2xx reports a problem; its scans are still published.
     #[error(
         "the device reports status {:#04x}: level {} (3 is an error, 4 a fatal one){}{}",
@@ -92,11 +70,7 @@ pub enum LmsError {
     #[error("{address}: the device closed the connection")]
     Closed { address: String },
     #[error("{address}: no data for {seconds} s; closing the connection")]
-    Silent {
-        address: String,
-        /// Time waited, seconds.
-        seconds: f64,
-    },
+    Silent { address: String, seconds: f64 },
     #[error("{}: cannot read the capture", path.display())]
     Capture {
         path: PathBuf,

@@ -12,7 +12,6 @@ mod clock;
 mod cola_setup;
 mod config;
 mod error;
-mod error_limit;
 mod lms2xx_scan;
 mod lms2xx_setup;
 mod pace;

@@ -36,7 +36,6 @@ pub(crate) struct Format {
     pub(crate) resolution_raw_1e2_deg: u16,
 }
 
-/// Next action of the caller.
 #[derive(Debug, PartialEq, Eq)]
 pub(crate) enum Action {
     Send(Command<'static>),
@@ -95,7 +94,6 @@ impl Setup {
         }
     }
 
-    /// Returns the next action.
     pub(crate) fn next(&mut self, now_ns: i64) -> Result<Action, LmsError> {
         if self.baud.is_none() && self.steps.is_empty() {
             self.try_another_rate()?;
@@ -249,7 +247,6 @@ impl Setup {
         })
     }
 
-    /// Returns the rate at which the device answered.
     pub(crate) fn baud(&self) -> Option<Baud> {
         self.baud
     }

@@ -9,7 +9,6 @@ use std::time::Duration;
 /// previous step is used.
 const LONGEST_GAP_US: u32 = 10_000_000;
 
-/// Follows the transmission times of telegrams.
 #[derive(Debug, Default)]
 pub(crate) struct Pace {
     last_us: Option<u32>,

@@ -11,10 +11,6 @@ use sick::cola::{AngleConvention, Channel, Field, LmdScanData, sweep_us};
 use crate::LmsError;
 use crate::clock::DeviceClock;
 
-/// Smallest raw distance; lower values are codes: 0 no return, 1 dazzled, 2 implausible, the others
-/// reserved (SICK's operating instructions, "LMDscandata – reserved values").
-const FIRST_DISTANCE: u16 = 16;
-
 /// Longest accepted time from scan to transmission, µs. A mirror turns at 5 Hz or faster.
 const LONGEST_DELAY_US: u32 = 1_000_000;
 
@@ -179,14 +175,8 @@ pub(crate) fn recordable(radians: f64) -> f64 {
 /// Writes the distances in metres, infinity for no return, in reverse order for a `clockwise`
 /// device; `ranges` has one element per distance.
 pub fn fill_ranges(distances: &Channel<'_>, clockwise: bool, ranges: &mut [f32]) {
-    let scale = f64::from(distances.scale_factor);
-    let offset = f64::from(distances.scale_offset);
-    for (range, raw) in ranges.iter_mut().zip(distances.values) {
-        *range = if raw < FIRST_DISTANCE {
-            f32::INFINITY
-        } else {
-            ((f64::from(raw) * scale + offset) * 1e-3) as f32
-        };
+    for (range, metres) in ranges.iter_mut().zip(distances.distances_m()) {
+        *range = metres.map_or(f32::INFINITY, |metres| metres as f32);
     }
     if clockwise {
         ranges.reverse();
@@ -195,13 +185,14 @@ pub fn fill_ranges(distances: &Channel<'_>, clockwise: bool, ranges: &mut [f32])
 
 /// Checks that the telegram can be converted to a scan.
 pub fn check(data: &LmdScanData<'_>, distances: &Channel<'_>) -> Result<(), LmsError> {
+    let count = distances.values.len();
     let step_deg = f64::from(distances.step_raw_1e4_deg) * 1e-4;
-    let sweep_deg = step_deg * distances.len().saturating_sub(1) as f64;
+    let sweep_deg = step_deg * count.saturating_sub(1) as f64;
     let scale = f64::from(distances.scale_factor);
     let layer = f64::from(data.layer_angle_raw);
     let rules = [
         ("layer angle", layer, layer == 0.0, "0, the level layer"),
-        ("count", 0.0, !distances.is_empty(), "at least 1"),
+        ("count", 0.0, count > 0, "at least 1"),
         ("angular step", step_deg, step_deg > 0.0, "above 0°"),
         ("sweep", sweep_deg, sweep_deg <= 360.0, "at most 360°"),
         ("scale factor", scale, scale > 0.0, "above 0"),

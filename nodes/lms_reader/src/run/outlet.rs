@@ -8,11 +8,10 @@ use messages::{NodeState, ScanHeader, topic};
 use sick::cola::{Field, LmdScanData};
 use sick::lms2xx::Status;
 use sick::{Frame, SickError};
-use transport::{Graph, Health, Publisher, TransportError, with_causes};
+use transport::{ErrorLimit, Graph, Health, Publisher, TransportError, with_causes};
 
 use crate::angles::Angles;
 use crate::clock::DeviceClock;
-use crate::error_limit::ErrorLimit;
 use crate::lms2xx_scan::WholeScan;
 use crate::scan::{self, Received, ScanSettings};
 use crate::{Config, LmsError};
@@ -146,7 +145,7 @@ impl Outlet {
                 return Ok(());
             }
         };
-        self.publish(header, distances.len(), |ranges| {
+        self.publish(header, distances.values.len(), |ranges| {
             scan::fill_ranges(&distances, clockwise, ranges);
         })?;
         let found = data.status;

@@ -9,7 +9,7 @@ pub(crate) const RECEIVED: Received = Received {
 pub(crate) fn settings() -> ScanSettings {
     ScanSettings {
         range_min_m: 0.05,
-        range_max_m: Some(25.0),
+        range_max_m: None,
         base_from_laser: None,
         upside_down: false,
         laser: Name::new(""),
@@ -68,26 +68,19 @@ impl World {
         })
     }
 
-    fn scan_with(
-        &self,
-        settings: &ScanSettings,
-        reach_m: f32,
-    ) -> Result<(ScanHeader, Vec<f32>), LmsError> {
+    fn scan(&self) -> Result<(ScanHeader, Vec<f32>), LmsError> {
+        let settings = settings();
         self.with(|data| {
             let distances = distances(data)?;
             let mut clock = DeviceClock::default();
-            let measured_ns = measured_ns(data, settings, RECEIVED, &mut clock)?;
+            let measured_ns = measured_ns(data, &settings, RECEIVED, &mut clock)?;
             check(data, &distances)?;
-            let angles = (self.convention, reach_m);
-            let header = header(data, &distances, angles, settings, measured_ns, RECEIVED);
-            let mut ranges = vec![0.0; distances.len()];
+            let angles = (self.convention, 250.0);
+            let header = header(data, &distances, angles, &settings, measured_ns, RECEIVED);
+            let mut ranges = vec![0.0; distances.values.len()];
             fill_ranges(&distances, self.convention.clockwise, &mut ranges);
             Ok((header, ranges))
         })
-    }
-
-    fn scan(&self) -> Result<(ScanHeader, Vec<f32>), LmsError> {
-        self.scan_with(&settings(), 80.0)
     }
 }
 
@@ -98,6 +91,8 @@ fn ninety_degrees_of_the_device_is_ahead() {
     // Single precision has 24 bits.
     assert!((header.angle_increment.to_degrees() - 0.3333).abs() < 0.3333 * 6e-8);
     assert_eq!(ranges.len(), 811);
+    // The longest range is the device's if no option sets it.
+    assert_eq!((header.range_min_m, header.range_max_m), (0.05, 250.0));
     // Beam 405 of 811 at steps of 0.3333° is 0.0135° short of ahead.
     let ahead = header.angle_min + 405.0 * header.angle_increment;
     assert!(
@@ -193,28 +188,6 @@ fn a_clockwise_device_is_read_from_its_last_beam() {
     let back_ns = (header.time_increment_s * 180.0 * 1e9).round() as i64;
     // Equal up to whole microseconds.
     assert!((header.stamp.measured_ns + back_ns - first_ns).abs() < 1000);
-}
-
-#[test]
-fn the_settings_are_passed_on() {
-    let mount = Pose2 {
-        x: 0.78,
-        y: 0.0,
-        yaw: 0.1,
-    };
-    let mut settings = ScanSettings {
-        base_from_laser: Some(mount),
-        ..settings()
-    };
-    let header = |settings: &_| World::default().scan_with(settings, 250.0).unwrap().0;
-    let with = header(&settings);
-    assert_eq!((with.base_from_laser, with.mount_known), (mount, 1));
-    assert_eq!((with.range_min_m, with.range_max_m), (0.05, 25.0));
-    assert_eq!(with.frame.as_str(), "laser");
-    // If no option sets it, it is the device's longest range.
-    (settings.range_max_m, settings.base_from_laser) = (None, None);
-    let far = header(&settings);
-    assert_eq!((far.range_max_m, far.mount_known), (250.0, 0));
 }
 
 #[test]

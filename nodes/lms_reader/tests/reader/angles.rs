@@ -1,9 +1,9 @@
 //! Devices with other zero angles and turning directions, as captures and over TCP.
 use std::io::Write;
 
-use messages::{NodeState, topic};
+use messages::topic;
 use sick::cola::{Channel, Channels, LmdScanData, Telegram};
-use transport::testing::{Isolated, wait_for_health, wait_until};
+use transport::testing::{Isolated, wait_until};
 
 use crate::{accept, framed, ident, listen, start};
 
@@ -35,12 +35,6 @@ fn radians(deg: f64) -> f64 {
     f64::from(deg.to_radians() as f32)
 }
 
-fn says_what_to_state(text: &str) {
-    for part in ["--device NAME", "--zero-deg DEGREES", "--clockwise"] {
-        assert!(text.contains(part), "{text}");
-    }
-}
-
 #[test]
 fn a_capture_of_a_tim240_without_its_name_is_refused_and_with_it_read() {
     let isolated = Isolated::new("tim");
@@ -57,7 +51,9 @@ fn a_capture_of_a_tim240_without_its_name_is_refused_and_with_it_read() {
     let (status, log) = play(&telegram).finish();
     assert_eq!(status.code(), Some(1), "{log}");
     assert!(scans.receive().unwrap().is_none(), "{log}");
-    says_what_to_state(&log);
+    for part in ["--device NAME", "--zero-deg DEGREES", "--clockwise"] {
+        assert!(log.contains(part), "{log}");
+    }
     assert!(log.contains("-120° to 120°"), "{log}");
     let named = framed(&Telegram::Answer(ident("TIM2xx")));
     let node = play(&[named, telegram].concat());
@@ -86,22 +82,5 @@ fn a_device_says_its_name_before_its_scans_count() {
         assert_eq!((header.angle_min, header.stamp.counter), (0.0, 0));
         true
     });
-    node.stop();
-}
-
-#[test]
-fn health_says_what_to_state() {
-    let isolated = Isolated::new("unnamed");
-    let graph = isolated.join("test");
-    let health = graph.subscriber::<topic::Health>().unwrap();
-    let (listener, address) = listen();
-    let node = start(&graph, &["--tcp", &address]);
-    let mut stream = accept(&listener, Some("XY7"), &[]);
-    stream.write_all(&scan(-120, 241)).unwrap();
-    let (report, reason) = wait_for_health(&graph, &health, |report| {
-        report.refused == 1 && report.state == NodeState::Degraded as u32
-    });
-    assert_eq!(report.sent, 0);
-    says_what_to_state(&reason);
     node.stop();
 }

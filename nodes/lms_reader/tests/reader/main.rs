@@ -1,8 +1,5 @@
 //! Tests of the reader as a process.
-#![allow(
-    clippy::unwrap_used,
-    reason = "the lint spares test functions but not what they share"
-)]
+#![allow(clippy::unwrap_used, reason = "the lint spares test functions alone")]
 
 mod angles;
 mod node;

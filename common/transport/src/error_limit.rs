@@ -6,9 +6,8 @@
 /// Least time between two logged errors, nanoseconds.
 const PERIOD_NS: i64 = 1_000_000_000;
 
-/// Rate limiter for the error log.
 #[derive(Debug, Default)]
-pub(crate) struct ErrorLimit {
+pub struct ErrorLimit {
     last_ns: Option<i64>,
     held_back: u64,
 }
@@ -16,7 +15,7 @@ pub(crate) struct ErrorLimit {
 impl ErrorLimit {
     /// Counts an error at `now_ns`; returns the number of errors suppressed before it if it should
     /// be logged, else `None`.
-    pub(crate) fn note(&mut self, now_ns: i64) -> Option<u64> {
+    pub fn note(&mut self, now_ns: i64) -> Option<u64> {
         if self.last_ns.is_some_and(|last| now_ns - last < PERIOD_NS) {
             self.held_back += 1;
             return None;
