@@ -10,6 +10,7 @@ mod queue;
 mod report;
 mod routers;
 mod session;
+pub mod testing;
 
 pub use error::{Cause, KeyError, NetworkError};
 pub use options::Options;

@@ -32,7 +32,6 @@ fn sample_bytes(sample: &Sample) -> usize {
     message_bytes(Some(sample.encoding()), parts)
 }
 
-/// Limits of a queue.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct QueueLimits {
     /// Largest number of waiting messages.

@@ -14,10 +14,10 @@ use crate::{Cause, NetworkError, Options};
 /// Polling interval while opening, and tick of health meanwhile.
 const TICK: Duration = Duration::from_millis(100);
 
-const MODE: &str = "mode";
+pub(crate) const MODE: &str = "mode";
 const LISTEN: &str = "listen/endpoints";
 pub(crate) const CONNECT: &str = "connect/endpoints";
-const SCOUTING: &str = "scouting/multicast/enabled";
+pub(crate) const SCOUTING: &str = "scouting/multicast/enabled";
 
 /// Default log filter of a node that joins a network, in the syntax of `RUST_LOG`. It includes
 /// accepted and rejected connections with the reason, which Zenoh would not log.

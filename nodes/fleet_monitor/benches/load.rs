@@ -24,7 +24,6 @@ use zenoh::{Session, Wait};
 
 /// Interval at which processor time and memory are printed.
 const PERIOD: Duration = Duration::from_secs(10);
-/// Number of beams per scan.
 const BEAMS: usize = 180;
 
 /// Options of the benchmark.
@@ -216,15 +215,7 @@ fn put<T: Wire>(to: &Publisher<'_>, sequence: u64, header: &T::Header, items: &[
 
 /// Sends for all robots in turn, evenly spread over time.
 fn send(endpoint: &str, config: &Config, stop: &AtomicBool) {
-    let mut settings = zenoh::Config::default();
-    for (key, value) in [
-        ("mode", "'client'".to_owned()),
-        ("connect/endpoints", format!("{:?}", [endpoint])),
-        ("scouting/multicast/enabled", "false".to_owned()),
-    ] {
-        settings.insert_json5(key, &value).unwrap();
-    }
-    let session = zenoh::open(settings).wait().unwrap();
+    let session = zenoh_session::testing::client(endpoint);
     let robots: Vec<_> = (0..config.robots)
         .map(|number| FarRobot::new(&session, number))
         .collect();

@@ -1,12 +1,6 @@
 //! Tests with several robots on one page, received over a network, and unknown senders of invalid
 //! data.
-#![allow(
-    clippy::unwrap_used,
-    reason = "the lint spares test functions but not what they share"
-)]
-
-use std::path::Path;
-use std::time::Duration;
+#![allow(clippy::unwrap_used, reason = "the lint spares test functions alone")]
 
 use bytemuck::Zeroable;
 use messages::{
@@ -20,20 +14,23 @@ use tests::browser::Browser;
 use tests::drawn_map::DrawnMap;
 use tests::http::{Site, token_file};
 use tests::needs::Need;
-use transport::testing::{Isolated, NodeProcess, wait_for_health, wait_until_ready};
-use transport::{Flow, Graph, TransportError, monotonic_ns};
+use transport::testing::{
+    Isolated, NodeProcess, StoppedAtEnd, wait_for_health, wait_to_see, wait_until_ready,
+};
+use transport::{Graph, monotonic_ns};
 use zenoh::bytes::Encoding;
 use zenoh::qos::CongestionControl;
 use zenoh::time::Timestamp;
 use zenoh::{Session, Wait};
 use zenoh_ext::{AdvancedPublisher, AdvancedPublisherBuilderExt, AdvancedSubscriberBuilderExt};
 use zenoh_ext::{CacheConfig, HistoryConfig, MissDetectionConfig};
+use zenoh_session::testing::client;
 
 const TOKEN: &str = "0123456789abcdef";
 
 /// The node, its page, and the address for robots.
 struct World {
-    node: Option<NodeProcess>,
+    _node: StoppedAtEnd,
     site: Site,
     endpoint: String,
     graph: Graph,
@@ -51,10 +48,19 @@ impl World {
             Site::free(),
             format!("tcp/{}:7447", isolated.name().loopback()),
         );
-        let node = start(&graph, site, &endpoint, &token);
+        let (page, token) = (site.0.to_string(), token.to_str().unwrap());
+        let arguments = [
+            "--page",
+            &page,
+            "--token-file",
+            token,
+            "--listen",
+            &endpoint,
+        ];
+        let node = NodeProcess::start(env!("CARGO_BIN_EXE_fleet_monitor"), &graph, arguments);
         wait_until_ready(&graph, "fleet_monitor");
         World {
-            node: Some(node),
+            _node: node.into(),
             site,
             endpoint,
             graph,
@@ -65,52 +71,19 @@ impl World {
 
     /// Repeats the request until the answer satisfies `is_awaited`.
     fn wait_for(&self, path: &str, is_awaited: impl Fn(&Value) -> bool) -> Value {
-        let mut found = None;
-        let tick = Duration::from_millis(20);
-        let outcome = self.graph.run(&[], tick, |_| {
+        wait_to_see(&self.graph, || {
             let (status, body) = self.site.ask("GET", path, &[], "");
             let answer = (status == 200).then(|| serde_json::from_str(&body).unwrap());
-            found = answer.filter(&is_awaited);
-            let flow = match found {
-                Some(_) => Flow::Stop,
-                None => Flow::Continue,
-            };
-            Ok::<_, TransportError>(flow)
-        });
-        outcome.unwrap();
-        found.unwrap()
+            answer.filter(&is_awaited)
+        })
     }
 
     fn robot(&self, name: &str) -> FarRobot {
-        let mut config = zenoh::Config::default();
-        for (key, value) in [
-            ("mode", "'client'".to_owned()),
-            ("connect/endpoints", format!("{:?}", [&self.endpoint])),
-            ("scouting/multicast/enabled", "false".to_owned()),
-        ] {
-            config.insert_json5(key, &value).unwrap();
-        }
         FarRobot {
             name: name.to_owned(),
-            session: zenoh::open(config).wait().unwrap(),
+            session: client(&self.endpoint),
         }
     }
-}
-
-impl Drop for World {
-    fn drop(&mut self) {
-        if let Some(node) = self.node.take()
-            && !std::thread::panicking()
-        {
-            node.stop();
-        }
-    }
-}
-
-fn start(graph: &Graph, Site(page): Site, endpoint: &str, token: &Path) -> NodeProcess {
-    let (page, token) = (page.to_string(), token.to_str().unwrap());
-    let arguments = ["--page", &page, "--token-file", token, "--listen", endpoint];
-    NodeProcess::start(env!("CARGO_BIN_EXE_fleet_monitor"), graph, arguments)
 }
 
 /// Simulated bridge of a robot.
@@ -129,16 +102,25 @@ impl FarRobot {
         network_payload::encode::<T>(&preamble, header, items).unwrap()
     }
 
-    fn put(&self, key: &str, encoding: &str, payload: Vec<u8>) {
-        self.put_at(None, key, encoding, payload);
-    }
-
-    fn put_at(&self, time: Option<Timestamp>, key: &str, encoding: &str, payload: Vec<u8>) {
+    fn put(&self, time: Option<Timestamp>, key: &str, encoding: &str, payload: Vec<u8>) {
         let put = self.session.put(key, payload).timestamp(time);
         let put = put.encoding(Encoding::from(encoding));
         put.congestion_control(CongestionControl::Block)
             .wait()
             .unwrap();
+    }
+
+    /// Sends a message on the robot's topic, with this Zenoh timestamp.
+    fn send<T: Wire>(
+        &self,
+        time: Option<Timestamp>,
+        sequence: u64,
+        header: &T::Header,
+        items: &[T::Item],
+    ) {
+        let key = network_payload::key::<T>(&self.name);
+        let payload = Self::payload::<T>(sequence, header, items);
+        self.put(time, &key, &network_payload::encoding::<T>(), payload);
     }
 
     fn answer(&self, sequence: u64, x: f64) {
@@ -162,14 +144,7 @@ impl FarRobot {
             },
             ..Hypothesis::zeroed()
         };
-        let payload = Self::payload::<topic::Hypotheses>(sequence, &header, &[place]);
-        let key = network_payload::key::<topic::Hypotheses>(&self.name);
-        self.put_at(
-            time,
-            &key,
-            &network_payload::encoding::<topic::Hypotheses>(),
-            payload,
-        );
+        self.send::<topic::Hypotheses>(time, sequence, &header, &[place]);
     }
 
     /// Sends a pose of the tracker.
@@ -183,13 +158,7 @@ impl FarRobot {
         header.stamp.entered_ns = monotonic_ns();
         header.sent_ns = monotonic_ns();
         header.map_from_laser.x = x;
-        let payload = Self::payload::<topic::Tracked>(sequence, &header, b"the scans do not fit");
-        let key = network_payload::key::<topic::Tracked>(&self.name);
-        self.put(
-            &key,
-            &network_payload::encoding::<topic::Tracked>(),
-            payload,
-        );
+        self.send::<topic::Tracked>(None, sequence, &header, b"the scans do not fit");
     }
 
     /// Publishes a map that is kept for late joiners.
@@ -308,10 +277,10 @@ fn what_strangers_send_is_refused_and_counted() {
     stranger.answer(0, 1.0);
     let sound = network_payload::encoding::<topic::Hypotheses>();
     let key = network_payload::key::<topic::Hypotheses>("a");
-    stranger.put(&key, &sound, vec![0xff; 100]);
-    stranger.put(&key, "text/plain", b"hello".to_vec());
-    stranger.put(&key, &sound, vec![0; 2 << 20]);
-    stranger.put("backcast/a b/hypotheses", &sound, vec![0]);
+    stranger.put(None, &key, &sound, vec![0xff; 100]);
+    stranger.put(None, &key, "text/plain", b"hello".to_vec());
+    stranger.put(None, &key, &sound, vec![0; 2 << 20]);
+    stranger.put(None, "backcast/a b/hypotheses", &sound, vec![0]);
     // More robots than can be shown, each valid by itself.
     for i in 0..300 {
         let robot = FarRobot {

@@ -1,8 +1,5 @@
 //! Tests with a viewer of Foxglove's protocol, over TCP, and a graph behind the server.
-#![allow(
-    clippy::unwrap_used,
-    reason = "the lint spares test functions but not what they share"
-)]
+#![allow(clippy::unwrap_used, reason = "the lint spares test functions alone")]
 
 use std::collections::BTreeMap;
 use std::net::TcpStream;
@@ -16,8 +13,10 @@ use serde::de::DeserializeOwned;
 use serde_json::{Value, json};
 use tests::drawn_map::DrawnMap;
 use tests::http::Site;
-use transport::testing::{Isolated, NodeProcess, wait_for_health, wait_until, wait_until_ready};
-use transport::{Flow, Graph, Publisher, TransportError, monotonic_ns};
+use transport::testing::{
+    Isolated, NodeProcess, StoppedAtEnd, wait_for_health, wait_to_see, wait_until, wait_until_ready,
+};
+use transport::{Graph, Publisher, monotonic_ns};
 use tungstenite::client::IntoClientRequest;
 use tungstenite::http::HeaderValue;
 use tungstenite::{Message, WebSocket, client};
@@ -28,7 +27,7 @@ const START: i64 = 1_137_772_793 * SECOND;
 
 /// The node in a graph of its own, fed by the test.
 struct World {
-    node: Option<NodeProcess>,
+    _node: StoppedAtEnd,
     site: Site,
     maps: Publisher<topic::Map>,
     scans: Publisher<topic::Scan>,
@@ -44,9 +43,6 @@ impl World {
         let graph = isolated.join("test");
         let site = Site::free();
         let listen = site.0.to_string();
-        let maps = graph.publisher().unwrap();
-        let (scans, hypotheses) = (graph.publisher().unwrap(), graph.publisher().unwrap());
-        let fields = graph.publisher().unwrap();
         // With few file descriptors, so that a test can use them up.
         let limited = ["-c", "ulimit -n 512 && exec \"$@\"", "sh"];
         let node = env!("CARGO_BIN_EXE_foxglove_server");
@@ -54,12 +50,12 @@ impl World {
         let node = NodeProcess::start("sh", &graph, limited.iter().chain(&arguments));
         wait_until_ready(&graph, "foxglove_server");
         World {
-            node: Some(node),
+            _node: node.into(),
             site,
-            maps,
-            scans,
-            hypotheses,
-            fields,
+            maps: graph.publisher().unwrap(),
+            scans: graph.publisher().unwrap(),
+            hypotheses: graph.publisher().unwrap(),
+            fields: graph.publisher().unwrap(),
             graph,
             _isolated: isolated,
         }
@@ -117,29 +113,11 @@ impl World {
         self.fields.send(header, &[0, 100]).unwrap();
     }
 
-    /// Runs the graph, so that latched messages are delivered, until the condition holds.
-    fn wait_until(&self, is_awaited: impl Fn() -> bool) {
-        let tick = std::time::Duration::from_millis(20);
-        let outcome = self.graph.run(&[], tick, |_| {
-            let flow = if is_awaited() {
-                Flow::Stop
-            } else {
-                Flow::Continue
-            };
-            Ok::<_, TransportError>(flow)
+    /// Waits until the image has subscribers, or none.
+    fn wait_for_looks(&self, wanted: bool) {
+        wait_to_see(&self.graph, || {
+            (self.fields.has_subscribers() == wanted).then_some(())
         });
-        outcome.unwrap();
-        assert!(is_awaited());
-    }
-}
-
-impl Drop for World {
-    fn drop(&mut self) {
-        if let Some(node) = self.node.take()
-            && !std::thread::panicking()
-        {
-            node.stop();
-        }
     }
 }
 
@@ -313,12 +291,12 @@ fn the_image_is_computed_while_somebody_looks_and_strangers_do_no_harm() {
     assert!(!world.fields.has_subscribers());
     let mut viewer = Viewer::connect(world.site);
     viewer.subscribe("/field");
-    world.wait_until(|| world.fields.has_subscribers());
+    world.wait_for_looks(true);
     world.send_field();
     let image: OccupancyGridMsg = decoded(&viewer.next("/field"));
     assert_eq!(image.data, [0, 50]);
     drop(viewer);
-    world.wait_until(|| !world.fields.has_subscribers());
+    world.wait_for_looks(false);
     // A client with another protocol is refused, and invalid messages do no harm.
     let refused = Viewer::speak(world.site, "mqtt").unwrap_err();
     assert!(refused.contains("400"), "{refused}");

@@ -10,9 +10,10 @@ mod waiting;
 mod watch;
 
 pub use isolated::Isolated;
-pub use node_process::NodeProcess;
+pub use node_process::{NodeProcess, StoppedAtEnd};
 pub use own_file_system::OwnFileSystem;
 pub use waiting::{
-    wait_for, wait_for_health, wait_for_next, wait_for_state, wait_until, wait_until_ready,
+    wait_for, wait_for_health, wait_for_next, wait_for_state, wait_to_see, wait_until,
+    wait_until_ready,
 };
 pub use watch::allow_long;

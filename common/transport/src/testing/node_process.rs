@@ -99,6 +99,26 @@ impl Drop for NodeProcess {
     }
 }
 
+/// A node that must end with success when its test has passed.
+#[derive(Debug)]
+pub struct StoppedAtEnd(Option<NodeProcess>);
+
+impl From<NodeProcess> for StoppedAtEnd {
+    fn from(node: NodeProcess) -> Self {
+        StoppedAtEnd(Some(node))
+    }
+}
+
+impl Drop for StoppedAtEnd {
+    fn drop(&mut self) {
+        if let Some(node) = self.0.take()
+            && !std::thread::panicking()
+        {
+            node.stop();
+        }
+    }
+}
+
 fn read_all(mut pipe: ChildStderr) -> Vec<u8> {
     let mut log = Vec::new();
     pipe.read_to_end(&mut log).unwrap();

@@ -30,6 +30,21 @@ pub fn wait_for<T: Topic, R>(
     taken.unwrap()
 }
 
+/// Returns the first value of `look`, which is called each tick.
+pub fn wait_to_see<R>(graph: &Graph, mut look: impl FnMut() -> Option<R>) -> R {
+    let mut seen = None;
+    graph
+        .run(&[], TICK, |_| {
+            seen = look();
+            Ok::<_, TransportError>(match seen {
+                Some(_) => Flow::Stop,
+                None => Flow::Continue,
+            })
+        })
+        .unwrap();
+    seen.unwrap()
+}
+
 /// Waits for the next message and returns copies of its header and items.
 pub fn wait_for_next<T: Topic>(
     graph: &Graph,

@@ -1,9 +1,5 @@
 //! The router of a fleet and its access rules. The tests use the shipped configurations with other
 //! addresses and paths.
-#![allow(
-    clippy::unwrap_used,
-    reason = "the lint spares test functions but not what they share"
-)]
 
 use std::path::{Path, PathBuf};
 use std::process::Command;

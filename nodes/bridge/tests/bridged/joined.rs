@@ -1,9 +1,5 @@
 //! Two graphs joined by two bridges over a loopback connection, and unknown senders of invalid
 //! data.
-#![allow(
-    clippy::unwrap_used,
-    reason = "the lint spares test functions but not what they share"
-)]
 
 use std::io::{BufRead, BufReader};
 use std::path::Path;
@@ -22,9 +18,10 @@ use tests::needs::Need;
 use tests::python;
 use transport::testing::{Isolated, NodeProcess, wait_for_health, wait_until};
 use transport::{Flow, Graph, Publisher, TransportError, monotonic_ns};
+use zenoh::Wait;
 use zenoh::bytes::Encoding;
 use zenoh::sample::SampleKind;
-use zenoh::{Session, Wait};
+use zenoh_session::testing::client;
 
 /// Machine with the laser and the map.
 const LASER: &str = "nodes:
@@ -213,7 +210,7 @@ fn what_strangers_send_is_refused_and_counted() {
     let health = engine.graph.subscriber::<topic::Health>().unwrap();
     let endpoint = engine.loopback();
     let bridge = engine.joined_bridge(&["--listen", &endpoint]);
-    let stranger = connect(&endpoint);
+    let stranger = client(&endpoint);
     let good = |sequence| {
         let preamble = Preamble {
             sender: 1,
@@ -282,7 +279,7 @@ fn who_watches_sees_bridges_and_nodes_come_and_go() {
     let engine = machine("alive", ENGINE);
     let endpoint = engine.loopback();
     let bridge = engine.joined_bridge(&["--listen", &endpoint]);
-    let watcher = connect(&endpoint);
+    let watcher = client(&endpoint);
     let (sender, changes) = std::sync::mpsc::channel();
     let _tokens = watcher
         .liveliness()
@@ -308,19 +305,6 @@ fn who_watches_sees_bridges_and_nodes_come_and_go() {
     until("engine", SampleKind::Delete);
     bridge.kill();
     until("", SampleKind::Delete);
-}
-
-/// Opens the session of another client, connected to `endpoint`.
-fn connect(endpoint: &str) -> Session {
-    let mut config = zenoh::Config::default();
-    for (key, value) in [
-        ("mode", "'client'"),
-        ("connect/endpoints", &format!("['{endpoint}']")),
-        ("scouting/multicast/enabled", "false"),
-    ] {
-        config.insert_json5(key, value).unwrap();
-    }
-    zenoh::open(config).wait().unwrap()
 }
 
 /// Runs the example of docs/bridge.md with Zenoh's Python library.

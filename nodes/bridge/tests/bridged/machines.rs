@@ -3,10 +3,6 @@
 //!
 //! The machines are separate graphs on this computer, over loopback connections or in network
 //! namespaces with virtual cables, which can be pulled.
-#![allow(
-    clippy::unwrap_used,
-    reason = "the lint spares test functions but not what they share"
-)]
 
 use std::path::Path;
 use std::sync::LazyLock;

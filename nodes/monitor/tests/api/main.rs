@@ -1,8 +1,5 @@
 //! Tests of the API from outside: over TCP, with a graph behind it.
-#![allow(
-    clippy::unwrap_used,
-    reason = "the lint spares test functions but not what they share"
-)]
+#![allow(clippy::unwrap_used, reason = "the lint spares test functions alone")]
 
 mod limits;
 mod phone;

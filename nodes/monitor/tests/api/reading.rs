@@ -6,7 +6,7 @@ use bytemuck::Zeroable;
 use messages::{Beam, BeamsHeader, FieldHeader, topic};
 use serde_json::json;
 use tests::drawn_map::DrawnMap;
-use transport::{Flow, TransportError};
+use transport::testing::wait_to_see;
 use tungstenite::Message;
 
 use crate::world::{World, map_name, next, next_of};
@@ -64,15 +64,10 @@ fn the_field_flows_while_somebody_looks() {
     let mut socket = world.stream();
     let wish = Message::text("{\"type\": \"field\", \"on\": true}");
     socket.send(wish).unwrap();
-    let tick = std::time::Duration::from_millis(20);
     let wait = |wanted: bool| {
-        world
-            .graph
-            .run(&[], tick, |_| {
-                let reached = fields.has_subscribers() == wanted;
-                Ok::<_, TransportError>(if reached { Flow::Stop } else { Flow::Continue })
-            })
-            .unwrap();
+        wait_to_see(&world.graph, || {
+            (fields.has_subscribers() == wanted).then_some(())
+        });
     };
     wait(true);
     let header = FieldHeader {

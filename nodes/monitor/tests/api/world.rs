@@ -1,7 +1,6 @@
 //! The node in a graph of its own, fed by the test.
 
-use std::net::{SocketAddr, TcpStream};
-use std::path::Path;
+use std::net::TcpStream;
 
 use bytemuck::Zeroable;
 use messages::{HypothesesHeader, Hypothesis, Pose2, PoseHeader, TrackState, Verdict, topic};
@@ -9,8 +8,8 @@ use serde_json::Value;
 use tempfile::TempDir;
 use tests::drawn_map::DrawnMap;
 use tests::http::{Site, token_file};
-use transport::testing::{Isolated, NodeProcess, wait_until_ready};
-use transport::{Flow, Graph, Publisher, TransportError};
+use transport::testing::{Isolated, NodeProcess, StoppedAtEnd, wait_to_see, wait_until_ready};
+use transport::{Graph, Publisher};
 use tungstenite::{Message, WebSocket, client};
 
 pub(crate) const TOKEN: &str = "0123456789abcdef";
@@ -21,12 +20,12 @@ pub(crate) fn map_name() -> String {
 }
 
 pub(crate) struct World {
-    node: Option<NodeProcess>,
+    _node: StoppedAtEnd,
     pub(crate) site: Site,
     hypotheses: Publisher<topic::Hypotheses>,
     pub(crate) poses: Publisher<topic::Tracked>,
     pub(crate) beams: Publisher<topic::Beams>,
-    maps: Publisher<topic::Map>,
+    _maps: Publisher<topic::Map>,
     pub(crate) graph: Graph,
     _isolated: Isolated,
     _folder: TempDir,
@@ -37,27 +36,30 @@ impl World {
         World::with(test, &[])
     }
 
-    pub(crate) fn with(test: &str, arguments: &[&str]) -> World {
+    pub(crate) fn with(test: &str, more: &[&str]) -> World {
         let isolated = Isolated::new(test);
         let graph = isolated.join("test");
         let folder = tempfile::tempdir().unwrap();
         let token = token_file(folder.path(), TOKEN);
         let site = Site::free();
-        let mut world = World {
-            node: None,
+        let maps = graph.publisher().unwrap();
+        DrawnMap::small().send(&maps);
+        let (address, token) = (site.0.to_string(), token.to_str().unwrap());
+        let common = ["--listen", &address, "--robot", "r", "--token-file", token];
+        let arguments = [&common, more].concat();
+        let node = NodeProcess::start(env!("CARGO_BIN_EXE_monitor"), &graph, arguments);
+        wait_until_ready(&graph, "monitor");
+        World {
+            _node: node.into(),
             site,
             hypotheses: graph.publisher().unwrap(),
             poses: graph.publisher().unwrap(),
             beams: graph.publisher().unwrap(),
-            maps: graph.publisher().unwrap(),
+            _maps: maps,
             graph,
             _isolated: isolated,
             _folder: folder,
-        };
-        DrawnMap::small().send(&world.maps);
-        world.node = Some(start(&world.graph, world.site.0, &token, arguments));
-        wait_until_ready(&world.graph, "monitor");
-        world
+        }
     }
 
     pub(crate) fn answer(&self, counter: u64, x: f64) {
@@ -94,16 +96,9 @@ impl World {
 
     /// Repeats the request until the answer satisfies `is_awaited`; the graph keeps running.
     pub(crate) fn wait_for_state(&self, is_awaited: impl Fn(&Value) -> bool) -> Value {
-        let mut found = None;
-        let tick = std::time::Duration::from_millis(20);
-        self.graph
-            .run(&[], tick, |_| {
-                found = Some(self.site.get("/api/v1/robots/r")).filter(&is_awaited);
-                let is_done = found.is_some();
-                Ok::<_, TransportError>(if is_done { Flow::Stop } else { Flow::Continue })
-            })
-            .unwrap();
-        found.unwrap()
+        wait_to_see(&self.graph, || {
+            Some(self.site.get("/api/v1/robots/r")).filter(&is_awaited)
+        })
     }
 
     pub(crate) fn stream(&self) -> WebSocket<TcpStream> {
@@ -111,26 +106,6 @@ impl World {
         let stream = TcpStream::connect(self.site.0).unwrap();
         client(url, stream).unwrap().0
     }
-}
-
-impl Drop for World {
-    fn drop(&mut self) {
-        if let Some(node) = self.node.take()
-            && !std::thread::panicking()
-        {
-            node.stop();
-        }
-    }
-}
-
-fn start(graph: &Graph, address: SocketAddr, token: &Path, more: &[&str]) -> NodeProcess {
-    let (address, token) = (address.to_string(), token.to_str().unwrap());
-    let common = ["--listen", &address, "--robot", "r", "--token-file", token];
-    NodeProcess::start(
-        env!("CARGO_BIN_EXE_monitor"),
-        graph,
-        [&common, more].concat(),
-    )
 }
 
 fn at(x: f64) -> Pose2 {

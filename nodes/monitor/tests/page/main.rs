@@ -1,8 +1,5 @@
 //! Tests of the page in a browser, in each state of the robot: its text, and accessibility.
-#![allow(
-    clippy::unwrap_used,
-    reason = "the lint spares test functions but not what they share"
-)]
+#![allow(clippy::unwrap_used, reason = "the lint spares test functions alone")]
 
 mod stage;
 mod telling;
