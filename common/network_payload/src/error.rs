@@ -2,7 +2,6 @@
 //!
 //! Each variant says what was found and what is allowed.
 
-/// Error of decoding or encoding a payload.
 #[derive(Debug, thiserror::Error)]
 pub enum WireError {
     #[error("the payload is {found:?}: on topic {topic} allowed is {expected:?}")]

@@ -29,11 +29,14 @@ pub fn robot(text: &str) -> Result<String, WireError> {
     name(text)
 }
 
-/// Returns the name of the robot of a process: the given one, or the host name if it is valid in
-/// keys, or `robot`.
-pub fn robot_or_host(given: Option<&str>, host: &str) -> String {
-    let host = || robot(host).unwrap_or_else(|_| "robot".to_owned());
-    given.map_or_else(host, str::to_owned)
+/// Returns the name of a robot without another one: that of this machine.
+pub fn robot_of_host() -> String {
+    named_after(&gethostname::gethostname().to_string_lossy())
+}
+
+/// Returns the host's name if it is valid in keys, else `robot`.
+fn named_after(host: &str) -> String {
+    robot(host).unwrap_or_else(|_| "robot".to_owned())
 }
 
 /// Returns the key of location requests on a map: `backcast/locate/<map>`.
@@ -70,9 +73,8 @@ mod tests {
 
     #[test]
     fn who_is_not_named_is_called_as_the_machine() {
-        assert_eq!(robot_or_host(Some("r2"), "desk"), "r2");
-        assert_eq!(robot_or_host(None, "desk"), "desk");
-        assert_eq!(robot_or_host(None, "a/b"), "robot");
+        assert_eq!(named_after("desk"), "desk");
+        assert_eq!(named_after("a/b"), "robot");
     }
 
     #[test]

@@ -23,7 +23,7 @@ mod sequence;
 mod topics;
 
 pub use error::WireError;
-pub use key::{MAX_NAME_BYTES, alive, key, locate, name, robot, robot_or_host};
+pub use key::{MAX_NAME_BYTES, alive, key, locate, name, robot, robot_of_host};
 pub use payload::{Preamble, Received, decode, encode, encoding};
 pub use sequence::{Arrival, Arrivals};
 pub use topics::{Visit, Wire, by_name};

@@ -51,7 +51,6 @@ pub fn encoding<T: Wire>() -> String {
     format!("application/postcard{packed};backcast.{}", T::SCHEMA)
 }
 
-/// Encodes a message.
 pub fn encode<T: Wire>(
     preamble: &Preamble,
     header: &T::Header,

@@ -8,10 +8,8 @@ use std::collections::VecDeque;
 /// Largest number of senders remembered for one topic.
 const MOST: usize = 32;
 
-/// Result of checking a message's number.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Arrival {
-    /// The message is new.
     New {
         /// Number of messages lost between the last one of this sender and this one.
         lost: u64,

@@ -50,12 +50,10 @@ impl Channels {
         })
     }
 
-    /// Returns true if the intensity image is viewed.
     pub(crate) fn is_field_viewed(&self) -> bool {
         self.field.has_sinks()
     }
 
-    /// Sends a message to all viewers of its topic.
     pub(crate) fn show(&self, serving: &Serving, message: Encoded) -> Result<(), ServerError> {
         if !self.open().contains_key(&message.topic) {
             let channel = self.offer(serving, &message)?;

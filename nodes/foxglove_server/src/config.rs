@@ -17,19 +17,12 @@ pub struct Config {
     pub listen: SocketAddr,
 
     /// Name of the robot [default: the name of the machine]
-    #[arg(long, value_name = "NAME", value_parser = network_payload::robot)]
-    pub robot: Option<String>,
+    #[arg(long, value_name = "NAME", value_parser = network_payload::robot,
+          default_value_t = network_payload::robot_of_host(), hide_default_value = true)]
+    pub robot: String,
 
     #[command(flatten)]
     pub transcript: ros_export::Options,
-}
-
-impl Config {
-    /// Returns the name of the robot.
-    pub fn robot(&self) -> String {
-        let host = gethostname::gethostname();
-        network_payload::robot_or_host(self.robot.as_deref(), &host.to_string_lossy())
-    }
 }
 
 #[cfg(test)]
@@ -40,6 +33,6 @@ mod tests {
     fn only_this_machine_is_served_unless_asked_for() {
         let config = Config::parse_from(["foxglove_server"]);
         assert!(config.listen.ip().is_loopback());
-        assert!(!config.robot().is_empty());
+        assert!(!config.robot.is_empty());
     }
 }

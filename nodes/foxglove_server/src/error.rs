@@ -4,7 +4,6 @@ use std::net::SocketAddr;
 
 use foxglove::FoxgloveError;
 
-/// Error of the server, with the value found and the values allowed.
 #[derive(Debug, thiserror::Error)]
 pub enum ServerError {
     #[error("cannot listen on {address}; another address is given by --listen")]

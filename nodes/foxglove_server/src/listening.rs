@@ -44,7 +44,7 @@ impl Listening {
             context: Arc::clone(context),
             handle: handle.clone(),
             channels: Arc::clone(channels),
-            robot: config.robot(),
+            robot: config.robot.clone(),
             address: config.listen,
             server: None,
             checked: Instant::now(),

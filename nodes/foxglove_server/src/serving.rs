@@ -14,7 +14,6 @@ use tokio::runtime::{Builder, Handle, Runtime};
 pub(crate) struct Serving(Runtime);
 
 impl Serving {
-    /// Starts the thread.
     pub(crate) fn start() -> std::io::Result<Self> {
         let mut one_thread = Builder::new_multi_thread();
         one_thread.worker_threads(1).thread_name("viewers");
