@@ -7,7 +7,6 @@ use network_payload::WireError;
 use transport::TransportError;
 use zenoh_session::{KeyError, NetworkError};
 
-/// Error of the bridge, with the value found and the values allowed.
 #[derive(Debug, thiserror::Error)]
 pub enum BridgeError {
     #[error("cannot determine which topics go out and come in")]

@@ -24,7 +24,7 @@ const TICK: Duration = Duration::from_millis(50);
 /// An unreachable network is not an error: the bridge waits for it.
 pub fn run(graph: &Graph, config: &Config) -> Result<(), BridgeError> {
     let ports = Ports::read(&config.dataflow, &config.id)?;
-    let robot = config.robot();
+    let robot = &config.robot;
     tracing::info!(%robot, out = ports.out.join(","), into = ports.into.join(","), "ports");
     let mut report = Report::new(graph.health()?);
     let Some(session) = zenoh_session::open(graph, &config.network, || report.tick())? else {
@@ -33,13 +33,13 @@ pub fn run(graph: &Graph, config: &Config) -> Result<(), BridgeError> {
     let ends = Ends {
         graph,
         session: &session,
-        robot: &robot,
+        robot,
         config,
         sender: getrandom::u64().map_err(BridgeError::Random)?,
     };
     let mut ways = ways(ends, &ports)?;
     let health_comes_in = ports.into.iter().any(|name| name == topic::Health::NAME);
-    let mut alive = Alive::open(graph, &session, &robot, health_comes_in)?;
+    let mut alive = Alive::open(graph, &session, robot, health_comes_in)?;
     let inputs: Vec<_> = ways.iter().filter_map(|way| way.input()).collect();
     let inputs: Vec<&dyn Input> = inputs.iter().map(|input| &**input).collect();
     report.ready()?;
@@ -55,11 +55,12 @@ pub fn run(graph: &Graph, config: &Config) -> Result<(), BridgeError> {
 
 /// Opens all topics of the ports; `network_payload` knows every topic that a descriptor may name.
 fn ways(ends: Ends<'_>, ports: &Ports) -> Result<Vec<Box<dyn Route>>, BridgeError> {
-    let out = ports.out.iter();
-    let out = out.filter_map(|name| network_payload::by_name(name, Outward(ends)));
-    let into = ports.into.iter();
-    let into = into.filter_map(|name| network_payload::by_name(name, Inward(ends)));
-    let mut ways: Vec<Box<dyn Route>> = out.chain(into).collect::<Result<_, _>>()?;
+    let out = ports.out.iter().map(|name| (name, true));
+    let into = ports.into.iter().map(|name| (name, false));
+    let opened = out
+        .chain(into)
+        .filter_map(|(name, goes_out)| network_payload::by_name(name, Opening { ends, goes_out }));
+    let mut ways: Vec<Box<dyn Route>> = opened.collect::<Result<_, _>>()?;
     let goes_out = |name: &str| ports.out.iter().any(|out| out == name);
     if goes_out(topic::Tracked::NAME) {
         ways.push(Box::new(Plain::<topic::Tracked>::open(ends, json::pose)?));
@@ -70,22 +71,18 @@ fn ways(ends: Ends<'_>, ports: &Ports) -> Result<Vec<Box<dyn Route>>, BridgeErro
     Ok(ways)
 }
 
-struct Outward<'a>(Ends<'a>);
-
-impl Visit for Outward<'_> {
-    type Output = Result<Box<dyn Route>, BridgeError>;
-
-    fn visit<T: Wire>(self) -> Self::Output {
-        Ok(Box::new(Outgoing::<T>::open(self.0)?))
-    }
+struct Opening<'a> {
+    ends: Ends<'a>,
+    goes_out: bool,
 }
 
-struct Inward<'a>(Ends<'a>);
-
-impl Visit for Inward<'_> {
+impl Visit for Opening<'_> {
     type Output = Result<Box<dyn Route>, BridgeError>;
 
     fn visit<T: Wire>(self) -> Self::Output {
-        Ok(Box::new(Incoming::<T>::open(self.0)?))
+        Ok(match self.goes_out {
+            true => Box::new(Outgoing::<T>::open(self.ends)?),
+            false => Box::new(Incoming::<T>::open(self.ends)?),
+        })
     }
 }
