@@ -5,7 +5,6 @@ use network_payload::WireError;
 use transport::TransportError;
 use zenoh_session::{KeyError, NetworkError};
 
-/// Error of the node, with the value found and the values allowed.
 #[derive(Debug, thiserror::Error)]
 pub enum FleetError {
     #[error(transparent)]

@@ -16,6 +16,9 @@ use crate::requests::Requests;
 
 pub(crate) struct Fleet {
     robots: Robots,
+    session: Session,
+    /// Session id by which robots recognize this process.
+    sender: u64,
     members: BTreeMap<String, Member>,
 }
 
@@ -29,14 +32,12 @@ struct Member {
     field: Option<Feed<topic::Field>>,
 }
 
-/// Result of processing a message.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Taken {
     Shown {
         /// Number of messages of this sender lost before it.
         lost: u64,
     },
-    /// The message has already been shown.
     Repeated,
 }
 
@@ -57,9 +58,11 @@ const SHOW_FIELD: Show<topic::Field> = |robot, header, pixels| {
 };
 
 impl Fleet {
-    pub(crate) fn new(robots: Robots) -> Self {
+    pub(crate) fn new(robots: Robots, session: Session, sender: u64) -> Self {
         Fleet {
             robots,
+            session,
+            sender,
             members: BTreeMap::new(),
         }
     }
@@ -69,10 +72,9 @@ impl Fleet {
         &mut self,
         received: &FleetMessage<T>,
         show: Show<T>,
-        join: impl FnOnce(&str) -> Result<Requests, FleetError>,
     ) -> Result<Taken, FleetError> {
         if !self.members.contains_key(&received.robot) {
-            self.welcome(&received.robot, join)?;
+            self.welcome(&received.robot)?;
         }
         let member = self.members.get_mut(&received.robot);
         let member = member.ok_or_else(|| FleetError::TooMany {
@@ -81,12 +83,8 @@ impl Fleet {
         member.take(received, show)
     }
 
-    fn welcome(
-        &mut self,
-        name: &str,
-        join: impl FnOnce(&str) -> Result<Requests, FleetError>,
-    ) -> Result<(), FleetError> {
-        let (robot, requested) = Robot::new(name.to_owned());
+    fn welcome(&mut self, name: &str) -> Result<(), FleetError> {
+        let (robot, requested) = Robot::new(name.to_owned(), None);
         if !self.robots.add(Arc::clone(&robot)) {
             let robot = name.to_owned();
             return Err(FleetError::TooMany { robot });
@@ -95,7 +93,7 @@ impl Fleet {
         let member = Member {
             robot,
             requested,
-            requests: join(name)?,
+            requests: Requests::open(&self.session, name, self.sender)?,
             arrivals: BTreeMap::new(),
             field: None,
         };
@@ -108,14 +106,15 @@ impl Fleet {
     pub(crate) fn tick(
         &mut self,
         graph: &Graph,
-        session: &Session,
     ) -> Result<Vec<Result<(), FleetError>>, FleetError> {
         let mut granted = Vec::new();
         for (name, member) in &mut self.members {
             member.robot.look_for_silence(monotonic_ns());
             member.robot.on_abilities(member.requests.abilities());
             match (member.robot.is_field_viewed(), &member.field) {
-                (true, None) => member.field = Some(Feed::open(session, name, graph.waker()?)?),
+                (true, None) => {
+                    member.field = Some(Feed::open(&self.session, name, graph.waker()?)?)
+                }
                 (false, Some(_)) => member.field = None,
                 _ => {}
             }
@@ -199,7 +198,6 @@ impl Member {
 }
 
 impl Requests {
-    /// Returns which requests have a subscriber.
     fn abilities(&self) -> Abilities {
         let [region, save, hint] = self.subscribed();
         Abilities {

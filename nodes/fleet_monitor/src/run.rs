@@ -5,13 +5,12 @@ use std::time::Duration;
 use dashboard::{Robots, Server};
 use messages::topic;
 use network_payload::Wire;
-use transport::{Flow, Graph, monotonic_ns};
+use transport::{Flow, Graph, TransportError, monotonic_ns};
 use zenoh::Session;
 use zenoh_session::Report;
 
 use crate::feed::{ALL, Feed};
 use crate::fleet::{Fleet, Show, Taken, sound};
-use crate::requests::Requests;
 use crate::{Config, FleetError};
 
 /// Longest delay for a request, an image and the detection of a silent node.
@@ -28,39 +27,56 @@ pub fn run(graph: &Graph, config: &Config) -> Result<(), FleetError> {
     let Some(session) = zenoh_session::open(graph, &config.network, || report.tick())? else {
         return Ok(());
     };
-    let mut node = Node {
-        inputs: inputs(graph, &session)?,
-        fleet: Fleet::new(robots),
-        sender: getrandom::u64().map_err(FleetError::Random)?,
-        session,
-        report,
-    };
-    node.report.ready()?;
+    let inputs = inputs(graph, &session)?;
+    let sender = getrandom::u64().map_err(FleetError::Random)?;
+    let mut fleet = Fleet::new(robots, session, sender);
+    report.ready()?;
     graph.run(&[], TICK, |wake| {
         server.check()?;
-        node.step(graph, wake.tick)?;
+        for input in &inputs {
+            input.take(&mut fleet, &mut report)?;
+        }
+        for outcome in fleet.take_fields() {
+            note(outcome, &mut report)?;
+        }
+        if wake.tick {
+            for granted in fleet.tick(graph)? {
+                report.outcome(granted)?;
+            }
+        }
+        report.tick()?;
         Ok(Flow::Continue)
     })
 }
 
-struct Node {
-    session: Session,
-    inputs: Vec<Box<dyn Input>>,
-    fleet: Fleet,
-    /// Session id by which robots recognize this process.
-    sender: u64,
-    report: Report,
-}
-
 /// A topic with a permanent subscription.
 trait Input {
-    fn take(&self, intake: &mut Intake<'_>) -> Result<(), FleetError>;
+    fn take(&self, fleet: &mut Fleet, report: &mut Report) -> Result<(), TransportError>;
 }
 
 impl<T: Wire> Input for (Feed<T>, Show<T>) {
-    fn take(&self, intake: &mut Intake<'_>) -> Result<(), FleetError> {
-        intake.take(&self.0, self.1)
+    fn take(&self, fleet: &mut Fleet, report: &mut Report) -> Result<(), TransportError> {
+        let (feed, show) = self;
+        report.dropped(feed.dropped());
+        for message in feed.waiting() {
+            let message = message.map_err(FleetError::from);
+            note(
+                message.and_then(|message| fleet.take(&message, *show)),
+                report,
+            )?;
+        }
+        Ok(())
     }
+}
+
+fn note(outcome: Result<Taken, FleetError>, report: &mut Report) -> Result<(), TransportError> {
+    report.received();
+    match outcome {
+        Ok(Taken::Shown { lost }) => report.dropped(lost),
+        Ok(Taken::Repeated) => {}
+        Err(error) => report.refused(&error)?,
+    }
+    Ok(())
 }
 
 /// Subscribes to all topics, maps before the results that refer to them.
@@ -101,62 +117,4 @@ fn inputs(graph: &Graph, session: &Session) -> Result<Vec<Box<dyn Input>>, Fleet
             Ok(())
         })?,
     ])
-}
-
-impl Node {
-    /// Processes everything that has arrived.
-    fn step(&mut self, graph: &Graph, tick: bool) -> Result<(), FleetError> {
-        let mut intake = Intake {
-            session: &self.session,
-            fleet: &mut self.fleet,
-            sender: self.sender,
-            report: &mut self.report,
-        };
-        for input in &self.inputs {
-            input.take(&mut intake)?;
-        }
-        intake.take_fields()?;
-        if tick {
-            for granted in self.fleet.tick(graph, &self.session)? {
-                self.report.outcome(granted)?;
-            }
-        }
-        self.report.tick().map_err(FleetError::from)
-    }
-}
-
-struct Intake<'a> {
-    session: &'a Session,
-    fleet: &'a mut Fleet,
-    sender: u64,
-    report: &'a mut Report,
-}
-
-impl Intake<'_> {
-    fn take<T: Wire>(&mut self, feed: &Feed<T>, show: Show<T>) -> Result<(), FleetError> {
-        self.report.dropped(feed.dropped());
-        let (session, sender) = (self.session, self.sender);
-        let join = |robot: &str| Requests::open(session, robot, sender);
-        for message in feed.waiting() {
-            let message = message.map_err(FleetError::from);
-            let outcome = message.and_then(|message| self.fleet.take(&message, show, join));
-            self.note(outcome)?;
-        }
-        Ok(())
-    }
-
-    fn take_fields(&mut self) -> Result<(), FleetError> {
-        let mut outcomes = self.fleet.take_fields().into_iter();
-        outcomes.try_for_each(|outcome| self.note(outcome))
-    }
-
-    fn note(&mut self, outcome: Result<Taken, FleetError>) -> Result<(), FleetError> {
-        self.report.received();
-        match outcome {
-            Ok(Taken::Shown { lost }) => self.report.dropped(lost),
-            Ok(Taken::Repeated) => {}
-            Err(error) => self.report.refused(&error)?,
-        }
-        Ok(())
-    }
 }
