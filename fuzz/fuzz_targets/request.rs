@@ -27,7 +27,7 @@ static PAGE: LazyLock<Page> = LazyLock::new(|| {
     let token = folder.path().join("token");
     std::fs::write(&token, TOKEN).unwrap();
     std::fs::set_permissions(&token, std::fs::Permissions::from_mode(0o600)).unwrap();
-    let (robot, requests) = Robot::new("r".into());
+    let (robot, requests) = Robot::new("r".into(), None);
     robot.on_abilities(Abilities {
         region: true,
         save: true,
@@ -43,7 +43,9 @@ static PAGE: LazyLock<Page> = LazyLock::new(|| {
         .unwrap()
         .local_addr()
         .unwrap();
-    let server = Server::start(address, &options, [robot].into_iter().collect::<Robots>()).unwrap();
+    let robots = Robots::default();
+    robots.add(robot);
+    let server = Server::start(address, &options, robots).unwrap();
     Page {
         address,
         requests: Mutex::new(requests),

@@ -9,7 +9,6 @@ pub enum DashboardError {
     #[error("cannot listen on {address}, nor on the {tried} ports after it")]
     Listen {
         address: SocketAddr,
-        /// Number of further ports that were tried.
         tried: u16,
         source: io::Error,
     },
@@ -19,11 +18,7 @@ pub enum DashboardError {
     TokenFile { path: PathBuf, source: io::Error },
     /// Every user of the machine can read or replace the token.
     #[error("{} has mode {mode:o}, so that everybody on this machine knows the token: chmod 600, or 640 for a group, is needed", path.display())]
-    OpenTokenFile {
-        path: PathBuf,
-        /// Permission bits of the file.
-        mode: u32,
-    },
+    OpenTokenFile { path: PathBuf, mode: u32 },
     /// The token is too short, too long or has characters that an HTTP header cannot carry.
     #[error("the token in {} has {found} characters; needed are 16 to 256 of ASCII without spaces", path.display())]
     Token { path: PathBuf, found: usize },

@@ -35,13 +35,10 @@ const MAX_REQUESTS: usize = 8;
 pub enum Request {
     /// Search only between these corners; an empty list searches the whole map.
     Region(Vec<[f64; 2]>),
-    /// Save the last minutes (black box).
     Save,
     /// The robot is probably at this pose in the map.
     Hint(Pose2),
-    /// Restart the node with this name.
     Restart(String),
-    /// Start or stop a recording.
     Record(bool),
 }
 
@@ -111,13 +108,9 @@ pub(crate) struct FieldView {
 }
 
 impl Robot {
-    /// Returns a robot without data, and the receiver of its requests. The name is part of URLs.
-    pub fn new(name: String) -> (Arc<Self>, Receiver<Request>) {
-        Self::in_graph(name, None)
-    }
-
-    /// Like [`Robot::new`], with the name of the robot's graph.
-    pub fn in_graph(name: String, graph: Option<String>) -> (Arc<Self>, Receiver<Request>) {
+    /// Returns a robot without data, and the receiver of its requests. The name is part of URLs;
+    /// that of the graph is not known on another machine.
+    pub fn new(name: String, graph: Option<String>) -> (Arc<Self>, Receiver<Request>) {
         let (requests, requested) = sync_channel(MAX_REQUESTS);
         let robot = Robot {
             name,
@@ -211,11 +204,9 @@ impl Robot {
     /// Sends an intensity image to viewers of the field; false if it is not valid.
     pub fn on_field(&self, header: &FieldHeader, items: &[u16]) -> bool {
         let frame = field_frame(header, items);
-        let is_sound = frame.is_some();
-        if let Some(frame) = frame {
-            self.field.send_replace(Some(frame.into()));
-        }
-        is_sound
+        frame
+            .map(|frame| self.field.send_replace(Some(frame.into())))
+            .is_some()
     }
 
     pub fn on_region(&self, corners: Vec<[f64; 2]>) {
@@ -259,11 +250,12 @@ impl Robot {
     }
 
     fn broadcast_state(&self, known: &Known, now_ns: i64) {
-        let Some(period) = known.history.newest(now_ns) else {
+        let mut periods = known.history.periods(now_ns).rev();
+        let Some(period) = periods.next() else {
             return;
         };
         if let Some(webhook) = self.webhook.get() {
-            let before = known.history.before(now_ns);
+            let before = periods.next();
             webhook.post(json::object(&StateChange {
                 robot: &self.name,
                 graph: self.graph.as_deref(),

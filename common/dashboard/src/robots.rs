@@ -59,22 +59,12 @@ impl Robots {
     }
 }
 
-impl FromIterator<Arc<Robot>> for Robots {
-    fn from_iter<I: IntoIterator<Item = Arc<Robot>>>(robots: I) -> Self {
-        let all = Robots::default();
-        for robot in robots {
-            all.add(robot);
-        }
-        all
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
 
     fn robot(name: &str) -> Arc<Robot> {
-        Robot::new(name.to_owned()).0
+        Robot::new(name.to_owned(), None).0
     }
 
     #[test]

@@ -39,7 +39,6 @@ use refusal::Refusal;
 
 const MAX_BODY: usize = 64 * 1024;
 
-/// Maximum number of streams at the same time.
 const MAX_WATCHERS: usize = 64;
 
 /// Longest time in which viewers are told that the server ends.
@@ -56,16 +55,6 @@ pub(crate) struct Site {
 }
 
 impl Site {
-    fn new(robots: Robots, token: Token, hosts: Vec<String>) -> Self {
-        Site {
-            robots,
-            token,
-            hosts,
-            watchers: Arc::new(Semaphore::new(MAX_WATCHERS)),
-            ended: watch::Sender::new(()),
-        }
-    }
-
     /// Ends all streams, and waits until their viewers know or are too slow.
     async fn end(&self) {
         self.ended.send_replace(());
@@ -133,14 +122,14 @@ impl Server {
         options: &Options,
         robots: Robots,
     ) -> Result<Self, DashboardError> {
-        let (token, shown) = match &options.token_file {
-            Some(path) => (Token::read(path)?, None),
-            None => {
-                let token = Token::random()?;
-                let shown = token.reveal().to_owned();
-                (token, Some(shown))
-            }
+        let token = match &options.token_file {
+            Some(path) => Token::read(path)?,
+            None => Token::random()?,
         };
+        let shown = options
+            .token_file
+            .is_none()
+            .then(|| token.reveal().to_owned());
         if let Some(server) = &options.webhook {
             robots.post_states_to(Webhook::start(server)?);
         }
@@ -150,7 +139,13 @@ impl Server {
             .enable_all()
             .build()
             .map_err(DashboardError::Server)?;
-        let site = Arc::new(Site::new(robots, token, options.host.clone()));
+        let site = Arc::new(Site {
+            robots,
+            token,
+            hosts: options.host.clone(),
+            watchers: Arc::new(Semaphore::new(MAX_WATCHERS)),
+            ended: watch::Sender::new(()),
+        });
         let app = router(Arc::clone(&site));
         let (stop, stopped) = oneshot::channel();
         let listener = {

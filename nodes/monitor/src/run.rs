@@ -22,7 +22,7 @@ const TICK: Duration = Duration::from_millis(50);
 
 /// Serves the page until the stop flag is set.
 pub fn run(graph: &Graph, config: &Config) -> Result<(), MonitorError> {
-    let (robot, requests) = Robot::in_graph(config.robot(), Some(graph.name().to_string()));
+    let (robot, requests) = Robot::new(config.robot.clone(), Some(graph.name().to_string()));
     let inputs = Inputs::open(graph)?;
     let mut node = Node {
         robot: Arc::clone(&robot),
@@ -32,7 +32,9 @@ pub fn run(graph: &Graph, config: &Config) -> Result<(), MonitorError> {
         launcher: Launcher::of(graph, &robot),
         health: graph.health()?,
     };
-    let server = Server::start(config.listen, &config.page, Robots::from_iter([robot]))?;
+    let robots = Robots::default();
+    robots.add(robot);
+    let server = Server::start(config.listen, &config.page, robots)?;
     server.announce("watch it", config.listen);
     // A request of a previous monitor is not known here, so it is withdrawn.
     node.outputs.region(&[])?;

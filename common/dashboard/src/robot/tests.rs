@@ -19,7 +19,7 @@ fn receive(robot: &Robot, counter: u64) {
 
 #[test]
 fn who_is_slow_loses_the_oldest_and_receives_how_many() {
-    let (robot, _requests) = Robot::new("r".into());
+    let (robot, _requests) = Robot::new("r".into(), None);
     let mut watching = robot.watch(0);
     for counter in 0..QUEUE as u64 + 3 {
         receive(&robot, counter);
@@ -32,7 +32,7 @@ fn who_is_slow_loses_the_oldest_and_receives_how_many() {
 
 #[test]
 fn requests_are_bounded() {
-    let (robot, requests) = Robot::new("r".into());
+    let (robot, requests) = Robot::new("r".into(), None);
     assert!((0..MAX_REQUESTS).all(|_| robot.request(Request::Save)));
     assert!(!robot.request(Request::Save));
     assert_eq!(requests.try_iter().count(), MAX_REQUESTS);
@@ -40,7 +40,7 @@ fn requests_are_bounded() {
 
 #[test]
 fn the_states_of_the_hour_are_kept_and_each_new_one_is_sent() {
-    let (robot, _requests) = Robot::in_graph("r".into(), Some("corridor".into()));
+    let (robot, _requests) = Robot::new("r".into(), Some("corridor".into()));
     let mut watching = robot.watch(0);
     let state_of = |text: &str| json(text)["state"].clone();
     let mut pose = PoseHeader {

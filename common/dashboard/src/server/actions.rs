@@ -53,7 +53,6 @@ pub(super) fn plain(wanted: Request) -> impl Fn(Allowed, Path<String>) -> Ready<
     move |Allowed(site), Path(name)| ready(request(&site, &name, wanted.clone()))
 }
 
-/// Limits the search to a region.
 pub(super) async fn search_in(
     Allowed(site): Allowed,
     Path(name): Path<String>,
@@ -76,7 +75,6 @@ pub(super) struct Here {
     yaw: f64,
 }
 
-/// Tells the tracker where the robot probably is.
 pub(super) async fn hint(
     Allowed(site): Allowed,
     Path(name): Path<String>,
@@ -90,7 +88,6 @@ pub(super) async fn hint(
     request(&site, &name, Request::Hint(Pose2 { x, y, yaw }))
 }
 
-/// Has the launcher restart a node.
 pub(super) async fn restart(
     Allowed(site): Allowed,
     Path((name, node)): Path<(String, String)>,

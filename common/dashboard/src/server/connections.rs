@@ -232,22 +232,6 @@ mod tests {
     }
 
     #[test]
-    fn those_that_were_answered_make_room_last() {
-        paused(async {
-            let all = Connections::default();
-            let mut watcher = connect(&all, 1);
-            watcher.0.write_u8(7).await.unwrap();
-            let mut silent = Vec::new();
-            for _ in 0..2 * MAX_OF_PEER {
-                tokio::time::advance(Duration::from_secs(1)).await;
-                silent.push(connect(&all, 1));
-            }
-            assert!(!is_closed(&mut watcher.0).await);
-            assert!(is_closed(&mut silent[0].0).await);
-        });
-    }
-
-    #[test]
     fn many_peers_make_room_for_one_another() {
         paused(async {
             let all = Connections::default();

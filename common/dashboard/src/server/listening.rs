@@ -13,7 +13,6 @@ use tokio::net::TcpListener;
 use super::connections::Connections;
 use crate::DashboardError;
 
-/// Number of further ports to try.
 const NEXT_PORTS: u16 = 100;
 
 /// Timeout for the head of a request, counted from the end of the previous one.

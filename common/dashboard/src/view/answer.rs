@@ -14,7 +14,6 @@ pub(crate) struct Answer {
     pub(crate) counter: u64,
     /// Time of measurement, in nanoseconds since 1970.
     pub(crate) stamp_ns: i64,
-    /// Verdict and best place.
     #[serde(flatten)]
     pub(crate) answer: ScanAnswer,
     /// Share of the beams' weight that agrees with the best place.

@@ -119,14 +119,6 @@ impl History {
             last: entry.last,
         })
     }
-
-    pub(crate) fn newest(&self, now_ns: i64) -> Option<Period<'_>> {
-        self.periods(now_ns).next_back()
-    }
-
-    pub(crate) fn before(&self, now_ns: i64) -> Option<Period<'_>> {
-        self.periods(now_ns).nth_back(1)
-    }
 }
 
 #[cfg(test)]
@@ -159,8 +151,6 @@ mod tests {
         assert_eq!((first.why, first.ago_s), ("one place", 0.0));
         let ends = (first.first.unwrap().x, first.last.unwrap().x);
         assert_eq!(ends, (1.0, 2.0));
-        assert_eq!(history.before(0).unwrap(), first);
-        assert_eq!(history.newest(0).unwrap().state, "Lost");
     }
 
     #[test]

@@ -50,12 +50,10 @@ impl Launcher {
         self.0.is_some()
     }
 
-    /// Asks the launcher to restart a node; a refusal is logged.
     pub(super) fn restart(&self, node: &str) {
         self.send(json!({ "restart": { "node": node } }));
     }
 
-    /// Asks the launcher to start or stop a recording; a refusal is logged.
     pub(super) fn record(&self, on: bool) {
         self.send(json!({ "record": { "on": on } }));
     }
