@@ -1,5 +1,7 @@
 //! Detection of the events on which the last minutes are saved.
 
+use std::collections::BTreeSet;
+
 use messages::{HealthHeader, NodeState, TrackState, Verdict};
 
 /// Number of consecutive scans without a place after which the pose counts as lost.
@@ -29,7 +31,7 @@ pub(crate) struct EventDetector {
     /// loss was reported.
     unknown_for: Option<u32>,
     tracked: Option<TrackState>,
-    degraded: Vec<String>,
+    degraded: BTreeSet<String>,
 }
 
 impl EventDetector {
@@ -59,19 +61,12 @@ impl EventDetector {
 
     pub(crate) fn health(&mut self, report: &HealthHeader) -> Option<Event> {
         let node = report.node.as_str();
-        let known = self.degraded.iter().position(|other| other == node);
-        let is_degraded = NodeState::from_code(report.state) == Some(NodeState::Degraded);
-        match (known, is_degraded) {
-            (None, true) => {
-                self.degraded.push(node.to_owned());
-                Some(Event::Degraded)
-            }
-            (Some(at), false) => {
-                self.degraded.swap_remove(at);
-                None
-            }
-            _ => None,
+        if report.state != NodeState::Degraded as u32 {
+            self.degraded.remove(node);
+            return None;
         }
+        let is_new = self.degraded.insert(node.to_owned());
+        is_new.then_some(Event::Degraded)
     }
 }
 
