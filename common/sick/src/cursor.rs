@@ -57,9 +57,9 @@ impl<'a> Cursor<'a> {
     }
 
     /// Skips to byte `at` of the content, which must not be before the current one.
-    pub(crate) fn skip_to(&mut self, at: usize) -> Result<(), SickError> {
-        self.take("what is skipped", at.saturating_sub(self.at))
-            .map(drop)
+    pub(crate) fn skip_to(&mut self, at: usize) -> Result<&mut Self, SickError> {
+        self.take("what is skipped", at.saturating_sub(self.at))?;
+        Ok(self)
     }
 
     /// Takes bytes, which are not numbers.

@@ -125,8 +125,7 @@ impl Mode {
             (0x25, _) => Mode::OnRequest,
             (0x2a, _) => Mode::PartialScans,
             _ => {
-                let parameters = fields.rest().len();
-                fields.take("parameters", parameters)?;
+                fields.take("parameters", fields.rest().len())?;
                 Mode::Other(code)
             }
         })

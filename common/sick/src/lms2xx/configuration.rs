@@ -47,9 +47,8 @@ impl Configuration {
         let kept = bytes.iter_mut().zip(all);
         kept.for_each(|(place, byte)| *place = *byte);
         fields.take("blanking and thresholds", MODE)?;
-        let modes = "0 to 6, 0x0f or 0x3f";
-        let range_mode = fields.known("measuring mode", RangeMode::from_code, modes)?;
-        let unit = fields.known("unit", Unit::from_code, "0 or 1")?;
+        let range_mode = RangeMode::read(fields)?;
+        let unit = Unit::read(fields)?;
         fields.take("the rest", length.saturating_sub(UNIT + 1))?;
         // These two are stored only in the fields that may be changed.
         bytes[MODE] = 0;

@@ -5,6 +5,9 @@
 //! 1FFA channel failed, 1FF7 too far, and correspondingly in the other modes (SICK, "Telegrams for
 //! configuring and operating the LMS 2xx").
 
+use crate::SickError;
+use crate::cursor::Cursor;
+
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Unit {
     #[default]
@@ -13,6 +16,10 @@ pub enum Unit {
 }
 
 impl Unit {
+    pub(super) fn read(fields: &mut Cursor<'_>) -> Result<Self, SickError> {
+        fields.known("unit", Self::from_code, "0 or 1")
+    }
+
     pub const fn code(self) -> u8 {
         self as u8
     }
@@ -58,6 +65,10 @@ pub enum RangeMode {
 }
 
 impl RangeMode {
+    pub(super) fn read(fields: &mut Cursor<'_>) -> Result<Self, SickError> {
+        fields.known("measuring mode", Self::from_code, "0 to 6, 0x0f or 0x3f")
+    }
+
     pub const ALL: [RangeMode; 9] = [
         RangeMode::Range8Fields,
         RangeMode::Range8Reflectivity,

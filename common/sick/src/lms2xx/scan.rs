@@ -3,7 +3,7 @@
 use super::range_mode::Unit;
 use crate::SickError;
 use crate::cola::Values;
-use crate::cursor::Cursor;
+use crate::cursor::{Cursor, field_error};
 
 /// Mask of the count: bits 0 to 9 of the head.
 const COUNT: u16 = 0x03ff;
@@ -48,14 +48,11 @@ impl<'a> Scan<'a> {
             true => Some((fields.u16("first value")?, fields.u16("last value")?)),
             false => None,
         };
+        let offset = fields.offset();
         let head = fields.u16("count and unit")?;
         let unit = (head >> 14) as u8;
-        let unit = Unit::from_code(unit).ok_or_else(|| SickError::Field {
-            field: "unit",
-            offset: if has_sub_range { 5 } else { 1 },
-            found: unit.to_string(),
-            allowed: "0 or 1",
-        })?;
+        let refused = || field_error("unit", offset, &unit, "0 or 1");
+        let unit = Unit::from_code(unit).ok_or_else(refused)?;
         let readings = fields.take("readings", usize::from(head & COUNT) * 2)?;
         let counters = match fields.rest() {
             [] => None,

@@ -63,31 +63,18 @@ const LENGTH: usize = 150;
 
 impl DeviceStatus {
     pub(super) fn read(fields: &mut Cursor<'_>) -> Result<Self, SickError> {
-        let version = fields.array("version")?;
-        let mode = fields.u8("operating mode")?;
-        let has_error = fields.u8("error")? != 0;
-        fields.skip_to(67)?;
-        let turns = fields.u16("turns")?;
-        fields.skip_to(102)?;
-        let modes = "0 to 6, 0x0f or 0x3f";
-        let range_mode = fields.known("measuring mode", RangeMode::from_code, modes)?;
-        fields.skip_to(107)?;
-        let width_deg = fields.u16("field")?;
-        let resolution_raw_1e2_deg = fields.u16("resolution")?;
-        fields.skip_to(122)?;
-        let unit = fields.known("unit", Unit::from_code, "0 or 1")?;
-        let left = fields.rest().len();
-        fields.take("the rest", left)?;
-        Ok(DeviceStatus {
-            version,
-            mode,
-            has_error,
-            turns,
-            range_mode,
-            width_deg,
-            resolution_raw_1e2_deg,
-            unit,
-        })
+        let status = DeviceStatus {
+            version: fields.array("version")?,
+            mode: fields.u8("operating mode")?,
+            has_error: fields.u8("error")? != 0,
+            turns: fields.skip_to(67)?.u16("turns")?,
+            range_mode: RangeMode::read(fields.skip_to(102)?)?,
+            width_deg: fields.skip_to(107)?.u16("field")?,
+            resolution_raw_1e2_deg: fields.u16("resolution")?,
+            unit: Unit::read(fields.skip_to(122)?)?,
+        };
+        fields.take("the rest", fields.rest().len())?;
+        Ok(status)
     }
 
     /// Writes fields that are not modelled as 0.
