@@ -1,17 +1,18 @@
 //! The list of known robots.
 
+use std::collections::BTreeMap;
 use std::sync::{Arc, PoisonError, RwLock, RwLockReadGuard};
 
 use crate::Robot;
 use crate::webhook::Webhook;
 
-/// Robots sorted by name. Clones share one list: the source adds robots, the server reads.
+/// Robots by name. Clones share one list: the source adds robots, the server reads.
 #[derive(Debug, Clone, Default)]
 pub struct Robots(Arc<RwLock<Shared>>);
 
 #[derive(Debug, Default)]
 struct Shared {
-    all: Vec<Arc<Robot>>,
+    all: BTreeMap<String, Arc<Robot>>,
     /// Receives the states of all robots.
     webhook: Option<Webhook>,
 }
@@ -23,35 +24,30 @@ impl Robots {
     pub fn add(&self, robot: Arc<Robot>) -> bool {
         let mut shared = self.0.write().unwrap_or_else(PoisonError::into_inner);
         let Shared { all, webhook } = &mut *shared;
-        let place = all.binary_search_by(|other| other.name().cmp(robot.name()));
-        match place {
-            Err(place) if all.len() < Self::MAX => {
-                if let Some(webhook) = webhook {
-                    robot.post_states_to(webhook);
-                }
-                all.insert(place, robot);
-                true
-            }
-            _ => false,
+        if all.len() == Self::MAX || all.contains_key(robot.name()) {
+            return false;
         }
+        if let Some(webhook) = webhook {
+            robot.post_states_to(webhook);
+        }
+        all.insert(robot.name().to_owned(), robot);
+        true
     }
 
     /// Posts the state changes of all robots, including those added later.
     pub(crate) fn post_states_to(&self, webhook: Webhook) {
         let mut shared = self.0.write().unwrap_or_else(PoisonError::into_inner);
-        shared.all.iter().for_each(|it| it.post_states_to(&webhook));
+        let robots = shared.all.values();
+        robots.for_each(|robot| robot.post_states_to(&webhook));
         shared.webhook = Some(webhook);
     }
 
     pub fn get(&self, name: &str) -> Option<Arc<Robot>> {
-        let all = &self.read().all;
-        let place = all.binary_search_by(|robot| robot.name().cmp(name)).ok()?;
-        Some(Arc::clone(&all[place]))
+        self.read().all.get(name).cloned()
     }
 
     pub fn names(&self) -> Vec<String> {
-        let all = &self.read().all;
-        all.iter().map(|robot| robot.name().to_owned()).collect()
+        self.read().all.keys().cloned().collect()
     }
 
     fn read(&self) -> RwLockReadGuard<'_, Shared> {

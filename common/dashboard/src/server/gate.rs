@@ -121,7 +121,7 @@ mod tests {
             })
             .collect();
         let outcome = admit(&map, &["robot.local".to_owned()]);
-        let status = outcome.err().map(|refusal| refusal.status().as_u16());
+        let status = outcome.err().map(|refusal| refusal.status.as_u16());
         assert_eq!(status, expected, "{headers:?}");
     }
 

@@ -7,7 +7,7 @@ use serde_json::json;
 
 #[derive(Debug)]
 pub(super) struct Refusal {
-    status: StatusCode,
+    pub(super) status: StatusCode,
     problem: String,
 }
 
@@ -25,11 +25,6 @@ impl Refusal {
             _ => format!("there is no robot {name:?}; there is {}", names.join(", ")),
         };
         Refusal::new(StatusCode::NOT_FOUND, problem)
-    }
-
-    #[cfg(test)]
-    pub(super) fn status(&self) -> StatusCode {
-        self.status
     }
 }
 

@@ -41,9 +41,7 @@ pub(crate) struct StateChange<'a> {
     pub(crate) since_s: f64,
     /// The state before; `None` for the first one.
     pub(crate) before: Option<&'static str>,
-    /// The last pose in the state before.
     pub(crate) before_pose: Option<Pose2>,
-    /// The new state.
     #[serde(flatten)]
     pub(crate) period: Period<'a>,
 }

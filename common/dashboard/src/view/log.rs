@@ -3,7 +3,6 @@
 use messages::{LogHeader, LogLevel};
 use serde::Serialize;
 
-/// Number of lines kept for new viewers.
 pub(crate) const MAX_LINES: usize = 200;
 
 #[derive(Debug, Clone, PartialEq, Serialize)]

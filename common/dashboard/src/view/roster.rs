@@ -1,5 +1,7 @@
 //! Nodes of a graph and their states.
 
+use std::collections::BTreeMap;
+
 use messages::{HealthHeader, NodeState};
 use serde::Serialize;
 
@@ -32,8 +34,9 @@ pub(crate) struct NodeReport {
     pub(crate) quiet_s: f64,
 }
 
+/// Nodes by name.
 #[derive(Debug, Default)]
-pub(crate) struct Roster(Vec<Entry>);
+pub(crate) struct Roster(BTreeMap<String, Entry>);
 
 #[derive(Debug)]
 struct Entry {
@@ -47,16 +50,11 @@ impl Roster {
     /// Takes a report; `None` if there are too many nodes.
     pub(crate) fn receive(&mut self, header: &HealthHeader, error: &[u8]) -> Option<&NodeReport> {
         let name = header.node.as_str();
-        let at = match self.0.iter().position(|entry| entry.report.name == name) {
-            Some(at) => at,
-            None if self.0.len() < CAPACITY => {
-                self.0.push(Entry::new(header));
-                self.0.sort_by(|a, b| a.report.name.cmp(&b.report.name));
-                self.0.iter().position(|entry| entry.report.name == name)?
-            }
-            None => return None,
-        };
-        let entry = self.0.get_mut(at)?;
+        if self.0.len() == CAPACITY && !self.0.contains_key(name) {
+            return None;
+        }
+        let entry = self.0.entry(name.to_owned());
+        let entry = entry.or_insert_with(|| Entry::new(header));
         entry.receive(header, error);
         Some(&entry.report)
     }
@@ -64,7 +62,7 @@ impl Roster {
     /// Nodes that have become silent since the last call.
     pub(crate) fn newly_silent(&mut self, now_ns: i64) -> Vec<&NodeReport> {
         let mut silent = Vec::new();
-        for entry in &mut self.0 {
+        for entry in self.0.values_mut() {
             let quiet_ns = now_ns.saturating_sub(entry.received_ns);
             entry.report.quiet_s = (quiet_ns as f64 / 1e8).round() / 10.0;
             let is_expected = !matches!(entry.report.state, "silent" | "stopped");
@@ -79,7 +77,7 @@ impl Roster {
     }
 
     pub(crate) fn reports(&self) -> impl Iterator<Item = &NodeReport> {
-        self.0.iter().map(|entry| &entry.report)
+        self.0.values().map(|entry| &entry.report)
     }
 }
 

@@ -13,12 +13,7 @@ const CAPACITY: usize = 3000;
 /// A pose of the laser: x, y, the first letter of the tracker's state (of the verdict without a
 /// tracker), and the heading.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-pub(crate) struct TrackPoint(
-    pub(crate) f64,
-    pub(crate) f64,
-    pub(crate) char,
-    pub(crate) f64,
-);
+pub(crate) struct TrackPoint(f64, f64, char, f64);
 
 /// Poses of the last scans in one map: the tracker's or, without one, the best of each scan.
 #[derive(Debug, Default)]
