@@ -4,14 +4,11 @@ use std::path::PathBuf;
 
 use transport::TransportError;
 
-/// Error of Zenoh.
 pub type Cause = Box<dyn std::error::Error + Send + Sync>;
 
-/// A key cannot be used.
 #[derive(Debug, thiserror::Error)]
 #[error("cannot {action} {key}")]
 pub struct KeyError {
-    /// Verb of what was tried.
     pub action: &'static str,
     pub key: String,
     pub source: Cause,
@@ -28,7 +25,6 @@ impl KeyError {
     }
 }
 
-/// Error of opening a session.
 #[derive(Debug, thiserror::Error)]
 pub enum NetworkError {
     #[error("cannot use {}", file.display())]

@@ -34,7 +34,6 @@ fn sample_bytes(sample: &Sample) -> usize {
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct QueueLimits {
-    /// Largest number of waiting messages.
     pub messages: usize,
     /// Largest size of one message, in bytes, without [`ENVELOPE_BYTES`].
     pub message_bytes: usize,
@@ -128,7 +127,6 @@ impl Queue {
         })
     }
 
-    /// Returns the oldest waiting message.
     pub fn next(&self) -> Option<Sample> {
         self.waiting.take()
     }

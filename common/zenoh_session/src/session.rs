@@ -26,7 +26,6 @@ pub const LOG: &str = "info,zenoh_transport::unicast::establishment::accept=debu
 /// Default endpoint to listen on: this machine only.
 const LOOPBACK: &str = r#"["tcp/127.0.0.1:7447"]"#;
 
-/// Extensions of a configuration file.
 const EXTENSIONS: [&str; 2] = ["json5", "json"];
 
 /// Settings used unless the user's file has them.

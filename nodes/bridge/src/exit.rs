@@ -48,7 +48,6 @@ impl Exit {
         }
     }
 
-    /// Returns the result of an earlier payload.
     pub(crate) fn outcome(&self) -> Option<Outcome> {
         match self {
             Exit::Here(_) => None,

@@ -17,12 +17,10 @@ struct Health<'a> {
     last_error: Cow<'a, str>,
 }
 
-/// Returns a message of topic `pose` as a JSON object.
 pub(crate) fn pose(header: &PoseHeader, words: &[u8]) -> String {
     json::object(&TrackedPose::new(header, words))
 }
 
-/// Returns a message of topic `health` as a JSON object.
 pub(crate) fn health(header: &HealthHeader, error: &[u8]) -> String {
     json::object(&Health {
         node: Cow::Borrowed(header.node.as_str()),

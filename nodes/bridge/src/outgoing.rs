@@ -58,7 +58,6 @@ impl<T: Wire> Outgoing<T> {
         })
     }
 
-    /// Subscribes to the topic while there is a remote subscriber.
     fn follow(&mut self, graph: &Graph) -> Result<(), TransportError> {
         match (self.exit.has_subscribers(), &self.subscriber) {
             (true, None) => self.subscriber = Some(Rc::new(graph.subscriber()?)),

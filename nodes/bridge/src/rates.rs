@@ -39,7 +39,6 @@ impl FromStr for Rate {
     }
 }
 
-/// Query of whether a topic is kept for late joiners.
 struct IsKept;
 
 impl Visit for IsKept {

@@ -8,14 +8,12 @@ use zenoh_session::Report;
 
 use crate::{BridgeError, Config};
 
-/// Context in which topics are opened.
 #[derive(Clone, Copy)]
 pub(crate) struct Ends<'a> {
     pub(crate) graph: &'a Graph,
     pub(crate) session: &'a Session,
     pub(crate) robot: &'a str,
     pub(crate) config: &'a Config,
-    /// Session id of this process.
     pub(crate) sender: u64,
 }
 

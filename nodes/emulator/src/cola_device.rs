@@ -66,7 +66,6 @@ impl Model {
 pub(crate) struct ColaDevice {
     model: Model,
     encoding: Encoding,
-    /// Scan configuration after power-on.
     full: ScanConfig,
     scan: ScanConfig,
     range: OutputRange,

@@ -24,7 +24,6 @@ pub(crate) enum Happening {
 pub(crate) struct Drive {
     pub(crate) sweep: Sweep,
     pub(crate) happenings: Vec<(i64, Happening)>,
-    /// Errors of messages that could not be used.
     pub(crate) refused: Vec<PlaybackError>,
 }
 

@@ -28,7 +28,6 @@ pub(crate) struct Player {
     has_started: bool,
     is_over: bool,
     next: usize,
-    /// Time of the next event, if known.
     wake_ns: Option<i64>,
     /// Number of scans that were due so far, over all rounds.
     counter: u64,

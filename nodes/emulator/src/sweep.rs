@@ -22,7 +22,6 @@ pub(crate) struct Sweep {
     pub(crate) scan_time_s: f64,
     /// True if the recording states the scan time; false if it is estimated.
     pub(crate) says_time: bool,
-    /// Log times, nanoseconds.
     times_ns: Vec<i64>,
     /// Times of measurement, microseconds since 1970.
     pub(crate) stamps_us: Vec<i64>,

@@ -177,7 +177,6 @@ impl Terminal {
         Ok(baud == self.device.baud.rate())
     }
 
-    /// Returns the number of bytes that the client has not read.
     fn unread(&self) -> Result<u32, EmulatorError> {
         let unread = self.slave.bytes_to_read();
         unread.map_err(|error| failed("look at what is unread", error))

@@ -36,7 +36,6 @@ fn wanted(config: &Config) -> Wanted {
     }
 }
 
-/// Open serial line and the state of its dialogue.
 struct Line<'a> {
     name: &'a Path,
     silence_s: f64,
@@ -44,7 +43,6 @@ struct Line<'a> {
     setup: Setup,
     framer: ReplyFramer,
     parts: Option<PartialScans>,
-    /// Time of the last telegram.
     last_data: Instant,
     /// Buffer of the command to send, reused.
     command: Vec<u8>,

@@ -46,7 +46,6 @@ fn try_each(address: &str) -> std::io::Result<TcpStream> {
     Err(failure)
 }
 
-/// Open connection and the state of its dialogue.
 struct Connection<'a> {
     address: &'a str,
     silence_s: f64,

@@ -11,7 +11,7 @@ use messages::{
 };
 use tests::drawn_map::DrawnMap;
 use tests::http::Site;
-use transport::testing::{Isolated, NodeProcess, wait_until_ready};
+use transport::testing::{Isolated, NodeProcess, StoppedAtEnd, wait_until_ready};
 use transport::{Flow, Graph, GraphName, Publisher, TransportError, monotonic_ns};
 
 /// Places that fit, as poses of the laser.
@@ -35,7 +35,7 @@ pub(crate) enum Scene {
 }
 
 pub(crate) struct Stage {
-    node: Option<NodeProcess>,
+    _node: StoppedAtEnd,
     pub(crate) site: Site,
     scenes: Option<Sender<Scene>>,
     feed: Option<JoinHandle<()>>,
@@ -50,17 +50,14 @@ impl Stage {
         let graph = isolated.join("test");
         let site = Site::free();
         let address = site.0.to_string();
-        let node = NodeProcess::start(
-            env!("CARGO_BIN_EXE_monitor"),
-            &graph,
-            ["--listen", &address, "--robot", "r7"],
-        );
+        let arguments = ["--listen", &address, "--robot", "r7"];
+        let node = NodeProcess::start(env!("CARGO_BIN_EXE_monitor"), &graph, arguments);
         wait_until_ready(&graph, "monitor");
         let (scenes, wanted) = channel();
         let name = isolated.name().clone();
         let feed = std::thread::spawn(move || feed(&name, &wanted));
         Stage {
-            node: Some(node),
+            _node: node.into(),
             site,
             scenes: Some(scenes),
             feed: Some(feed),
@@ -83,13 +80,8 @@ impl Drop for Stage {
     fn drop(&mut self) {
         drop(self.scenes.take());
         let fed = self.feed.take().map(JoinHandle::join);
-        if std::thread::panicking() {
-            return;
-        }
-        assert!(fed.is_some_and(|fed| fed.is_ok()), "the feed ended well");
-        if let Some(node) = self.node.take() {
-            node.stop();
-        }
+        let has_ended_well = fed.is_some_and(|fed| fed.is_ok());
+        assert!(has_ended_well || std::thread::panicking());
     }
 }
 
