@@ -1,7 +1,5 @@
 //! Appends fields to a content, in either encoding; the counterpart of `Cursor`.
 
-use std::io::Write;
-
 use super::Encoding;
 
 #[derive(Debug)]
@@ -39,8 +37,7 @@ impl<'a> Writer<'a> {
     }
 
     fn word(&mut self, value: u32) {
-        // Writing to memory cannot fail.
-        let _ = write!(self.out, " {value:X}");
+        self.out.extend_from_slice(format!(" {value:X}").as_bytes());
     }
 
     pub(crate) fn u8(&mut self, value: u8) {
