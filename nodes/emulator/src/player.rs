@@ -9,14 +9,6 @@ use replay::{Action, Rate, Schedule};
 
 use crate::drive::Happening;
 
-#[derive(Debug, PartialEq)]
-pub(crate) enum Due<'a> {
-    /// Scan to send; `counter` is the number of scans before it.
-    Scan { index: usize, counter: u64 },
-    /// Odometry or ground truth to publish.
-    Other(&'a Happening),
-}
-
 #[derive(Debug)]
 pub(crate) struct Player {
     happenings: Vec<(i64, Happening)>,
@@ -30,7 +22,7 @@ pub(crate) struct Player {
     next: usize,
     wake_ns: Option<i64>,
     /// Number of scans that were due so far, over all rounds.
-    counter: u64,
+    scans: u64,
     /// Number of scans without an answer.
     pub(crate) unanswered: u64,
 }
@@ -56,7 +48,7 @@ impl Player {
             is_over: false,
             next: 0,
             wake_ns: None,
-            counter: 0,
+            scans: 0,
             unanswered: 0,
         }
     }
@@ -74,7 +66,7 @@ impl Player {
         self.rate == Rate::Max && self.schedule.awaited().is_some()
     }
 
-    pub(crate) fn take(&mut self, now_ns: i64) -> Option<Due<'_>> {
+    pub(crate) fn take(&mut self, now_ns: i64) -> Option<&Happening> {
         self.wake_ns = None;
         while self.has_started && !self.is_over {
             let pending_ns = self.happenings.get(self.next).map(|(log_ns, _)| *log_ns);
@@ -95,7 +87,7 @@ impl Player {
         None
     }
 
-    fn advance(&mut self) -> Option<Due<'_>> {
+    fn advance(&mut self) -> Option<&Happening> {
         let at = self.next;
         self.next += 1;
         if self.looped && self.next == self.happenings.len() {
@@ -103,14 +95,13 @@ impl Player {
             self.schedule.start_over(self.gap_ns);
         }
         let (_, happening) = self.happenings.get(at)?;
-        Some(match happening {
-            &Happening::Scan(index) => {
-                self.counter += 1;
-                let counter = self.counter - 1;
-                Due::Scan { index, counter }
-            }
-            other => Due::Other(other),
-        })
+        self.scans += u64::from(matches!(happening, Happening::Scan(_)));
+        Some(happening)
+    }
+
+    /// Returns the number of scans before the last one.
+    pub(crate) fn counter(&self) -> u64 {
+        self.scans.saturating_sub(1)
     }
 
     /// Records that the last scan was sent intact at `now_ns`, so that an answer is expected.
@@ -119,7 +110,7 @@ impl Player {
             self.schedule.scan_sent(Stamp {
                 measured_ns: 0,
                 entered_ns: now_ns,
-                counter: self.counter.saturating_sub(1),
+                counter: self.counter(),
             });
         }
     }
@@ -150,25 +141,29 @@ mod tests {
         Player::new(happenings, rate, looped, 1.0)
     }
 
-    fn scan(index: usize, counter: u64) -> Option<Due<'static>> {
-        Some(Due::Scan { index, counter })
+    /// Returns index and counter of the scan that is due.
+    fn take(player: &mut Player, now_ns: i64) -> Option<(usize, u64)> {
+        match player.take(now_ns)? {
+            &Happening::Scan(index) => Some((index, player.counter())),
+            other => panic!("{other:?}"),
+        }
     }
 
     #[test]
     fn the_original_distances_from_the_start_on() {
         let mut player = player(&[700, 800, 950], Rate::Factor(0.5), false);
-        assert_eq!(player.take(i64::MAX), None, "nobody wants scans yet");
+        assert_eq!(take(&mut player, i64::MAX), None, "nobody wants scans yet");
         player.start();
-        assert_eq!(player.take(5 * MS), scan(0, 0));
-        assert_eq!(player.take(204 * MS), None);
+        assert_eq!(take(&mut player, 5 * MS), Some((0, 0)));
+        assert_eq!(take(&mut player, 204 * MS), None);
         assert_eq!(player.wake_ns(), Some(205 * MS));
-        assert_eq!(player.take(205 * MS), scan(1, 1));
+        assert_eq!(take(&mut player, 205 * MS), Some((1, 1)));
         // Calling late does not delay the following events.
-        assert_eq!(player.take(206 * MS), None);
+        assert_eq!(take(&mut player, 206 * MS), None);
         assert_eq!(player.wake_ns(), Some(505 * MS));
-        assert_eq!(player.take(600 * MS), scan(2, 2));
+        assert_eq!(take(&mut player, 600 * MS), Some((2, 2)));
         assert!(!player.is_over());
-        assert_eq!(player.take(600 * MS), None);
+        assert_eq!(take(&mut player, 600 * MS), None);
         assert!(player.is_over() && player.wake_ns().is_none());
     }
 
@@ -179,9 +174,12 @@ mod tests {
         for step in 0..10 {
             let at_ns = step * 100 * MS;
             if step > 0 {
-                assert_eq!(player.take(at_ns - 1), None, "{step}");
+                assert_eq!(take(&mut player, at_ns - 1), None, "{step}");
             }
-            assert_eq!(player.take(at_ns), scan((step % 3) as usize, step as u64));
+            assert_eq!(
+                take(&mut player, at_ns),
+                Some(((step % 3) as usize, step as u64))
+            );
         }
         assert!(!player.is_over());
     }
@@ -190,19 +188,19 @@ mod tests {
     fn at_max_each_scan_waits_for_an_answer_to_the_one_before() {
         let mut player = player(&[0, 100, 200], Rate::Max, false);
         player.start();
-        assert_eq!(player.take(10), scan(0, 0));
+        assert_eq!(take(&mut player, 10), Some((0, 0)));
         player.sent(10);
         assert!(player.awaits_answer());
         player.answered(9);
-        assert_eq!(player.take(11), None, "that scan came in before");
+        assert_eq!(take(&mut player, 11), None, "that scan came in before");
         player.answered(12);
-        assert_eq!(player.take(13), scan(1, 1));
+        assert_eq!(take(&mut player, 13), Some((1, 1)));
         // The answer to a lost scan is not awaited.
-        assert_eq!(player.take(14), scan(2, 2));
+        assert_eq!(take(&mut player, 14), Some((2, 2)));
         player.sent(14);
-        assert_eq!(player.take(15), None);
+        assert_eq!(take(&mut player, 15), None);
         assert!(!player.is_over(), "the last answer is waited for as well");
-        assert_eq!(player.take(14 + 1000 * MS), None);
+        assert_eq!(take(&mut player, 14 + 1000 * MS), None);
         assert!(player.is_over());
         assert_eq!(player.unanswered, 1);
     }

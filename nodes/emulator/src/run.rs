@@ -16,7 +16,7 @@ use transport::{Graph, Health, Subscriber, TransportError, monotonic_ns, with_ca
 use crate::cola_device::Model;
 use crate::drive::{Drive, Happening};
 use crate::faults::Faults;
-use crate::player::{Due, Player};
+use crate::player::Player;
 use crate::sweep::Sweep;
 use crate::{Config, EmulatorError};
 
@@ -57,9 +57,6 @@ struct Common {
     stop: Arc<AtomicBool>,
     refused: u64,
 }
-
-/// Index of a scan, and the number of scans before it.
-type Scan = (usize, u64);
 
 impl Common {
     fn open(graph: &Graph, config: &Config) -> Result<Self, EmulatorError> {
@@ -118,19 +115,16 @@ impl Common {
         Ok(())
     }
 
-    /// Returns the next scan due at `now_ns`; publishes the other messages due before it.
-    fn next_scan(&mut self, now_ns: i64) -> Result<Option<Scan>, TransportError> {
+    /// Returns the index of the next scan due at `now_ns`; publishes the messages due before it.
+    fn next_scan(&mut self, now_ns: i64) -> Result<Option<usize>, TransportError> {
         while let Some(answer) = self.answers.receive()? {
             self.player.answered(answer.header().stamp.entered_ns);
         }
         while let Some(due) = self.player.take(now_ns) {
             match due {
-                Due::Scan { index, counter } => return Ok(Some((index, counter))),
-                Due::Other(Happening::Odometry(odometry)) => {
-                    self.poses.send_odometry(**odometry)?;
-                }
-                Due::Other(Happening::GroundTruth(truth)) => self.poses.send_truth(**truth)?,
-                Due::Other(Happening::Scan(_)) => {}
+                &Happening::Scan(index) => return Ok(Some(index)),
+                Happening::Odometry(odometry) => self.poses.send_odometry(**odometry)?,
+                Happening::GroundTruth(truth) => self.poses.send_truth(**truth)?,
             }
         }
         Ok(None)

@@ -39,7 +39,7 @@ pub(super) fn run(link: &Path, baud: Baud, common: Common) -> Result<ExitCode, E
         if terminal.device.is_wanted() {
             terminal.common.start()?;
         }
-        while let Some((scan, _)) = terminal.common.next_scan(now_ns)? {
+        while let Some(scan) = terminal.common.next_scan(now_ns)? {
             terminal.say_scan(now_ns, scan);
         }
         let is_over = terminal.common.player.is_over();

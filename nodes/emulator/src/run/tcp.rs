@@ -79,7 +79,8 @@ fn play(
     common: &mut Common,
     (now_ns, now_us): (i64, u64),
 ) -> Result<(), TransportError> {
-    while let Some((scan, counter)) = common.next_scan(now_ns)? {
+    while let Some(scan) = common.next_scan(now_ns)? {
+        let counter = common.player.counter();
         let mut is_sent = false;
         for client in clients
             .iter_mut()
