@@ -8,7 +8,7 @@ use replay::PlaybackError;
 #[derive(Debug, thiserror::Error)]
 pub enum EmulatorError {
     #[error(transparent)]
-    Recording(#[from] Box<RecordingError>),
+    Recording(#[from] RecordingError),
     #[error(transparent)]
     Playback(#[from] PlaybackError),
     #[error("{}: there is no scan in it", path.display())]
@@ -40,10 +40,4 @@ pub enum EmulatorError {
     },
     #[error(transparent)]
     Transport(#[from] transport::TransportError),
-}
-
-impl From<RecordingError> for EmulatorError {
-    fn from(error: RecordingError) -> Self {
-        EmulatorError::Recording(Box::new(error))
-    }
 }

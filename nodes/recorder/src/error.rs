@@ -15,7 +15,7 @@ pub enum RecorderError {
     #[error(transparent)]
     Sample(#[from] ros_export::TranscriptError),
     #[error(transparent)]
-    Recording(#[from] Box<RecordingError>),
+    Recording(#[from] RecordingError),
     #[error("cannot catch SIGUSR1")]
     Signal(#[source] io::Error),
     #[error("cannot start the writer thread")]
@@ -30,11 +30,5 @@ impl RecorderError {
     /// Returns a function that converts an error of the system; `problem` says what was tried.
     pub(crate) fn file(problem: String) -> impl FnOnce(io::Error) -> Self {
         |source| RecorderError::File { problem, source }
-    }
-}
-
-impl From<RecordingError> for RecorderError {
-    fn from(error: RecordingError) -> Self {
-        RecorderError::Recording(Box::new(error))
     }
 }

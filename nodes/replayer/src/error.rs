@@ -8,7 +8,7 @@ use replay::PlaybackError;
 #[derive(Debug, thiserror::Error)]
 pub enum ReplayerError {
     #[error(transparent)]
-    Recording(#[from] Box<RecordingError>),
+    Recording(#[from] RecordingError),
     #[error(transparent)]
     Playback(#[from] PlaybackError),
     #[error("{} has no {}; it has {}", path.display(), unknown.join(", "), found.join(", "))]
@@ -21,10 +21,4 @@ pub enum ReplayerError {
     Keyboard(#[source] std::io::Error),
     #[error(transparent)]
     Transport(#[from] transport::TransportError),
-}
-
-impl From<RecordingError> for ReplayerError {
-    fn from(error: RecordingError) -> Self {
-        ReplayerError::Recording(Box::new(error))
-    }
 }
