@@ -75,9 +75,8 @@ pub(crate) struct Setup {
 impl Setup {
     /// Creates the dialogue; `last` is the rate at which the device answered before.
     pub(crate) fn new(wanted: Wanted, last: Option<Baud>) -> Self {
-        let likely = [Baud::B38400, Baud::B9600, Baud::B500000, Baud::B19200];
         let mut rates = VecDeque::new();
-        for rate in [last, wanted.baud].into_iter().flatten().chain(likely) {
+        for rate in [last, wanted.baud].into_iter().flatten().chain(Baud::ALL) {
             if !rates.contains(&rate) {
                 rates.push_back(rate);
             }

@@ -85,8 +85,9 @@ pub enum ConventionError {
     )]
     Unknown { name: String, field: Field },
     #[error(
-        "which way a {row} looks is not known: the sources differ ({sources}); {}",
-        turned()
+        "which way a {row} looks is not known: the sources differ ({sources}); no scan is \
+         published until lms_reader is given {options}",
+        options = OPTIONS
     )]
     Disputed {
         row: &'static str,
@@ -101,11 +102,6 @@ fn remedy() -> String {
         "no scan is published until lms_reader is given --device NAME (such as TiM240, NAV310 or \
          LMS111), or {OPTIONS}"
     )
-}
-
-/// Returns the advice that applies to every device.
-fn turned() -> String {
-    format!("no scan is published until lms_reader is given {OPTIONS}")
 }
 
 const OPTIONS: &str = "--zero-deg DEGREES, the device's own angle that points ahead, with \

@@ -65,8 +65,8 @@ pub enum Baud {
 }
 
 impl Baud {
-    /// All rates, slowest first.
-    pub const ALL: [Baud; 4] = [Baud::B9600, Baud::B19200, Baud::B38400, Baud::B500000];
+    /// All rates, most likely first.
+    pub const ALL: [Baud; 4] = [Baud::B38400, Baud::B9600, Baud::B500000, Baud::B19200];
 
     /// Returns the rate in bits per second.
     pub const fn rate(self) -> u32 {

@@ -10,8 +10,6 @@ use super::error::{not_reached, not_understood};
 use super::line::Line;
 use super::picture::Seen;
 
-/// Baud rates, most likely first.
-const RATES: [Baud; 4] = [Baud::B38400, Baud::B9600, Baud::B500000, Baud::B19200];
 /// Attempts at each rate: the first command may collide with a scan in transmission.
 const TRIES: usize = 2;
 /// Longest wait for an answer: two scans may be in transmission at 38400 baud.
@@ -64,7 +62,7 @@ impl<'a> Device<'a> {
 
     /// Finds the baud rate with a command that every mode answers and that stops scans.
     fn find_rate(&mut self) -> anyhow::Result<Baud> {
-        for baud in RATES {
+        for baud in Baud::ALL {
             let switched = self.line.switch(baud);
             switched.with_context(|| not_reached(&self.path.display()))?;
             self.framer = ReplyFramer::default();
@@ -77,7 +75,7 @@ impl<'a> Device<'a> {
                 }
             }
         }
-        let rates = RATES.map(|baud| baud.rate().to_string()).join(", ");
+        let rates = Baud::ALL.map(|baud| baud.rate().to_string()).join(", ");
         let tried = format!("an LMS2xx at {rates} baud");
         Err(not_understood(&self.path.display(), self.received, &tried))
     }
