@@ -9,15 +9,14 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
 use bytemuck::Zeroable;
-use messages::{
-    FrameName, MapHeader, Name, Pose2, PoseHeader, ScanHeader, Stamp, TrackState, topic,
-};
+use messages::{FrameName, Name, Pose2, PoseHeader, ScanHeader, Stamp, TrackState, topic};
 use network_payload::{Preamble, Wire};
+use tests::drawn_map::DrawnMap;
 use tests::machine::Machine;
 use tests::needs::Need;
 use tests::python;
 use transport::testing::{Isolated, NodeProcess, wait_for_health, wait_until};
-use transport::{Flow, Graph, Publisher, TransportError, monotonic_ns};
+use transport::{Flow, Graph, TransportError, monotonic_ns};
 use zenoh::Wait;
 use zenoh::bytes::Encoding;
 use zenoh::sample::SampleKind;
@@ -77,31 +76,12 @@ fn ranges(counter: u64) -> Vec<f32> {
     ranges
 }
 
-fn map(counter: u64, width: u32, height: u32) -> (MapHeader, Vec<u8>) {
-    let cells: Vec<u8> = (0..width * height).map(|i| (i * i % 101) as u8).collect();
-    let mut header = MapHeader {
-        stamp: Stamp {
-            measured_ns: 5,
-            entered_ns: monotonic_ns(),
-            counter,
-        },
-        map_id: 0,
-        width,
-        height,
-        resolution_m: 0.05,
-        map_from_grid: Pose2 {
-            x: -3.0,
-            y: 2.0,
-            yaw: 0.5,
-        },
-        ..MapHeader::default()
-    };
-    header.map_id = header.id_of(&cells);
-    (header, cells)
-}
-
-fn send(maps: &Publisher<topic::Map>, (header, cells): &(MapHeader, Vec<u8>)) {
-    maps.send(*header, cells).unwrap();
+fn map(width: u32, height: u32) -> DrawnMap {
+    let cells = (0..width * height).map(|i| (i * i % 101) as u8);
+    let mut map = DrawnMap::new(width, 0.05, cells.collect());
+    map.header.map_from_grid = pose2(-3.0, 2.0);
+    map.header.map_id = map.header.id_of(&map.cells);
+    map
 }
 
 /// Sends scans until `stop` is set, on a thread of its own, because a member of a graph stays on
@@ -172,17 +152,18 @@ fn a_late_joiner_gets_the_map_once() {
     let engine = machine("late-b", ENGINE);
     let endpoint = laser.loopback();
     let maps = laser.graph.publisher::<topic::Map>().unwrap();
-    let sent = map(0, 300, 200);
-    send(&maps, &sent);
+    let sent = map(300, 200);
+    sent.send(&maps);
     let first = laser.joined_bridge(&["--listen", &endpoint]);
     let received = engine.graph.subscriber::<topic::Map>().unwrap();
     let second = engine.joined_bridge(&["--connect", &endpoint]);
-    let expect = |sent: &(MapHeader, Vec<u8>)| {
+    let expect = |sent: &DrawnMap| {
         wait_until(&engine.graph, &received, |header, cells| {
-            assert_eq!(header.map_id, sent.0.map_id, "a map came twice");
-            assert_eq!((header.width, header.height), (sent.0.width, sent.0.height));
-            assert_eq!(header.map_from_grid, sent.0.map_from_grid);
-            assert_eq!(cells, sent.1);
+            assert_eq!(header.map_id, sent.header.map_id, "a map came twice");
+            let sides = (sent.header.width, sent.header.height);
+            assert_eq!((header.width, header.height), sides);
+            assert_eq!(header.map_from_grid, sent.header.map_from_grid);
+            assert_eq!(cells, sent.cells);
             true
         });
     };
@@ -190,14 +171,14 @@ fn a_late_joiner_gets_the_map_once() {
     // A subscriber that joins later receives it from the bridge.
     let later = engine.graph.subscriber::<topic::Map>().unwrap();
     wait_until(&engine.graph, &later, |header, _| {
-        header.map_id == sent.0.map_id
+        header.map_id == sent.header.map_id
     });
     // A restarted bridge repeats nothing, and new maps arrive.
     first.kill();
     laser.graph.cleanup_dead_nodes();
     let first = laser.joined_bridge(&["--listen", &endpoint]);
-    let next = map(1, 20, 10);
-    send(&maps, &next);
+    let next = map(20, 10);
+    next.send(&maps);
     expect(&next);
     first.stop();
     second.stop();
