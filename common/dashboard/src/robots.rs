@@ -54,20 +54,3 @@ impl Robots {
         self.0.read().unwrap_or_else(PoisonError::into_inner)
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn robot(name: &str) -> Arc<Robot> {
-        Robot::new(name.to_owned(), None).0
-    }
-
-    #[test]
-    fn made_up_names_do_not_fill_the_memory() {
-        let robots = Robots::default();
-        let added = (0..1000).filter(|i| robots.add(robot(&i.to_string())));
-        assert_eq!(added.count(), Robots::MAX);
-        assert_eq!(robots.names().len(), Robots::MAX);
-    }
-}
