@@ -46,15 +46,12 @@ impl Fault {
     pub const WRITE_DENIED: Fault = Fault(0xa);
     pub const UNKNOWN_COMMAND: Fault = Fault(0xc);
     pub const UNKNOWN_EVENT: Fault = Fault(0xf);
-
-    pub fn meaning(self) -> &'static str {
-        let meaning = MEANINGS.get(usize::from(self.0));
-        meaning.copied().unwrap_or("not in SICK's listing")
-    }
 }
 
 impl fmt::Display for Fault {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{:#x}: {}", self.0, self.meaning())
+        let meaning = MEANINGS.get(usize::from(self.0));
+        let meaning = meaning.copied().unwrap_or("not in SICK's listing");
+        write!(f, "{:#x}: {meaning}", self.0)
     }
 }
