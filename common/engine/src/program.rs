@@ -6,8 +6,9 @@
 use crate::EngineError;
 use crate::beams::{Beam, BeamConfig, Chosen, MIN_WEIGHT};
 use crate::observation::Observation;
+use crate::simd::TABLE;
 use crate::space::Space;
-use crate::tables::{TABLE, VoteTable};
+use crate::tables::VoteTable;
 use crate::taper::TaperShape;
 
 /// Range of a ray that meets no obstacle.

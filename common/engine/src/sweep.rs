@@ -19,8 +19,7 @@ use crate::accumulator::{Accumulator, Query};
 use crate::directions::{Direction, swap_unless};
 use crate::grid::{Cell, Grid};
 use crate::instruction_set::InstructionSet;
-use crate::simd::Simd;
-use crate::simd::table::{LANES, TABLE};
+use crate::simd::{LANES, Simd, TABLE};
 
 /// Side of the squares in which the sums along both axes are joined.
 const SQUARE: usize = 8;

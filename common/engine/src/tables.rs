@@ -1,10 +1,6 @@
 //! Tapers of a scan program as tables for lookups of several ranges at once.
 
-use crate::simd::CELLS;
-use crate::simd::table::{LANES, Tables};
-
-/// Largest number of entries of a short table, which one instruction can look up.
-pub(crate) const TABLE: usize = 64;
+use crate::simd::{CELLS, LANES, Set, TABLE};
 
 /// Votes by distance from the reading.
 #[derive(Debug, Clone, Copy)]
@@ -36,7 +32,7 @@ impl<'a> VoteTable<'a> {
 
     /// Adds the votes for poses whose rays have these lengths.
     #[inline(always)]
-    pub(crate) fn add<T: Tables>(self, set: T, ranges: &[u16; CELLS], votes: &mut [u16; CELLS]) {
+    pub(crate) fn add<S: Set>(self, set: S, ranges: &[u16; CELLS], votes: &mut [u16; CELLS]) {
         let Some(entries) = self.short() else {
             for (votes, &range) in votes.iter_mut().zip(ranges) {
                 let distance = range.abs_diff(self.centre).min(self.used);

@@ -1,7 +1,6 @@
 //! Votes at 64 adjacent headings.
 
-use super::table::{LANES, Tables};
-use crate::tables::TABLE;
+use super::{LANES, Set, TABLE};
 
 /// Number of headings that are bounded at a time.
 pub(crate) const HEADINGS: usize = 64;
@@ -25,9 +24,9 @@ pub(crate) struct BinVotes {
 impl BinVotes {
     /// Adds the most votes of the beam for a range of either interval to those at each heading.
     #[inline(always)]
-    pub(crate) fn add<T: Tables>(
+    pub(crate) fn add<S: Set>(
         &self,
-        set: T,
+        set: S,
         rows: IntervalRows<'_>,
         votes: &mut [u8; HEADINGS],
     ) -> [u8; HEADINGS] {
@@ -45,15 +44,15 @@ impl BinVotes {
 
 /// Returns a bit for each heading with any votes.
 #[inline(always)]
-pub(crate) fn present<T: Tables>(set: T, votes: [u8; HEADINGS]) -> u64 {
+pub(crate) fn present<S: Set>(set: S, votes: [u8; HEADINGS]) -> u64 {
     let [low, high]: [[u8; LANES]; HEADINGS / LANES] = bytemuck::must_cast(votes);
     u64::from(set.present(low)) | u64::from(set.present(high)) << LANES
 }
 
 /// Looks up the votes in the bin of each interval that is nearest to the centre.
 #[inline(always)]
-fn look_up<T: Tables>(
-    set: T,
+fn look_up<S: Set>(
+    set: S,
     votes: &BinVotes,
     first: &[u8; HEADINGS],
     last: &[u8; HEADINGS],
@@ -79,7 +78,7 @@ mod tests {
 
     use super::*;
     use crate::instruction_set::InstructionSet;
-    use crate::simd::{Kernel, Set, Simd};
+    use crate::simd::{Kernel, Simd};
 
     /// Kernel that returns the votes of some beams in some rows, and bits for the headings with
     /// any.

@@ -1,25 +1,26 @@
-//! Vectors of numbers in the registers of an instruction set.
+//! Kernels that are compiled for each instruction set, and the operations in which sets differ.
 //!
-//! [`Portable`] and [`Avx2`] are tokens: each proves that the processor has the
-//! instructions, which was checked when the first one was made ([`Simd::new`]). Vectors can
-//! only be made with a token, and nothing that takes these instructions can be called
-//! without a token or a vector. So the code of the search and of the sweeps is safe, and
-//! written once for all sets: it is a [`Kernel`], generic over the [`Set`], which
-//! [`Simd::run`] runs compiled for the one at hand.
+//! [`Portable`] and [`Avx2`](avx2::Avx2) are tokens: each proves that the processor has the
+//! instructions, which was checked when it was made ([`Simd::new`]). The code of the search and of
+//! the sweeps is safe, and written once for all sets: it is a [`Kernel`], generic over the
+//! [`Set`], which [`Simd::run`] runs compiled for the one at hand.
 //!
-//! The modules here hold the code that differs between the sets. There the macro `avx2!`
-//! compiles functions for AVX2, in which its instructions are safe to use.
-//! Calling such a function is all that is `unsafe`, and it happens in one place, in
-//! [`compiled!`]. Memory is read and written through arrays and slices alone.
+//! Most loops are plain, and the compiler vectorizes them. Only look-ups and shuffles of bytes, for
+//! which it does not find the instructions, are written for each set: the methods of [`Set`].
+//! Calling a function that was compiled for AVX2 is all that is `unsafe`, and memory is read and
+//! written through arrays and slices alone.
 //!
 //! `docs/engine_measurements.md` says why this is not done by `fearless_simd`.
 
+#[cfg(target_arch = "x86_64")]
+mod avx2;
 pub(crate) mod headings;
-pub(crate) mod numbers;
-pub(crate) mod table;
+mod portable;
 pub(crate) mod words;
 
 use crate::instruction_set::InstructionSet;
+use portable::Portable;
+use words::{BYTES, Words};
 
 /// Cells along the side of a small block, whose votes and ranges are adjacent in memory.
 pub(crate) const SIDE: usize = 4;
@@ -27,118 +28,32 @@ pub(crate) const SIDE: usize = 4;
 /// Cells of such a block, row by row.
 pub(crate) const CELLS: usize = SIDE * SIDE;
 
-/// Compiles functions for a set of instructions: those of an implementation of a trait, a
-/// single one, or kernels.
-///
-/// The first argument of each function is a token of the set, or a value that is only made
-/// with one.
-#[cfg(target_arch = "x86_64")]
-macro_rules! compiled {
-    (
-        [$features:literal]
-        impl $trait:ident for $type:ty {
-            $($(#[$about:meta])* type $associated:ident = $associated_type:ty;)*
-            $(const $constant:ident: $constant_type:ty = $constant_value:expr;)*
-            $(
-                fn $name:ident (
-                    $first:ident $(: $first_type:ty)? $(, $argument:ident: $argument_type:ty)* $(,)?
-                ) $(-> $result:ty)? $body:block
-            )*
-        }
-    ) => {
-        impl $type {
-            $(
-                #[inline]
-                #[target_feature(enable = $features)]
-                fn $name (
-                    $first $(: $first_type)? $(, $argument: $argument_type)*
-                ) $(-> $result)? $body
-            )*
-        }
+/// Largest number of entries of a short table, which one instruction can look up.
+pub(crate) const TABLE: usize = 64;
 
-        impl $trait for $type {
-            $($(#[$about])* type $associated = $associated_type;)*
-            $(const $constant: $constant_type = $constant_value;)*
-            $(
-                #[inline(always)]
-                fn $name (
-                    $first $(: $first_type)? $(, $argument: $argument_type)*
-                ) $(-> $result)? {
-                    // SAFETY: the first argument is a token or was made with one, so the
-                    // processor has the instructions.
-                    unsafe { <$type>::$name($first $(, $argument)*) }
-                }
-            )*
-        }
-    };
-    ([$features:literal] kernels for $token:ident) => {
-        impl $token {
-            #[inline(always)]
-            fn run<K: Kernel>(self, kernel: K) -> K::Result {
-                #[target_feature(enable = $features)]
-                fn compiled<K: Kernel>(set: $token, kernel: K) -> K::Result {
-                    kernel.run(set)
-                }
-                // SAFETY: the token proves that the processor has the instructions.
-                unsafe { compiled(self, kernel) }
-            }
-        }
-    };
-    (
-        [$features:literal]
-        $(#[$attribute:meta])*
-        $visibility:vis fn $name:ident (
-            $token:ident: $token_type:ty $(, $argument:ident: $argument_type:ty)* $(,)?
-        ) $(-> $result:ty)? $body:block
-    ) => {
-        $(#[$attribute])*
-        #[inline(always)]
-        $visibility fn $name (
-            $token: $token_type $(, $argument: $argument_type)*
-        ) $(-> $result)? {
-            #[inline]
-            #[target_feature(enable = $features)]
-            fn compiled (
-                $token: $token_type $(, $argument: $argument_type)*
-            ) $(-> $result)? $body
-            // SAFETY: the token proves that the processor has the instructions.
-            unsafe { compiled($token $(, $argument)*) }
-        }
-    };
-}
+/// Number of bytes that are looked up together.
+pub(crate) const LANES: usize = 32;
 
-/// [`compiled!`] for AVX2; the features are those of [`InstructionSet::Avx2`].
-#[cfg(target_arch = "x86_64")]
-macro_rules! avx2 {
-    ($($item:tt)*) => {
-        $crate::simd::compiled! { ["avx2,bmi1,bmi2,lzcnt,popcnt"] $($item)* }
-    };
-}
+/// Number of entries that an instruction of AVX2 and NEON looks up.
+#[cfg(any(target_arch = "x86_64", target_arch = "aarch64"))]
+const PIECE: usize = 16;
 
-#[cfg(target_arch = "x86_64")]
-pub(crate) use {avx2, compiled};
+/// A token, and the operations of its instruction set.
+pub(crate) trait Set: Copy {
+    /// Looks numbers up in a table of which `used` entries are not 0; numbers beyond those
+    /// give 0.
+    fn look_up(self, table: &[u8; TABLE], used: usize, index: [u8; LANES]) -> [u8; LANES];
 
-/// The baseline CPU.
-#[derive(Debug, Clone, Copy, Default)]
-pub(crate) struct Portable;
+    /// Returns a bit for each number that is not 0.
+    fn present(self, numbers: [u8; LANES]) -> u32;
 
-/// Proof that the processor has [`InstructionSet::Avx2`].
-#[cfg(target_arch = "x86_64")]
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Avx2(());
+    /// Spreads groups of four bytes: places that the mask selects get the next group of
+    /// `bytes`, others get no bits.
+    fn expand(self, mask: u16, bytes: &[u8; BYTES]) -> Words;
 
-/// A token, and the vectors of its instruction set.
-pub(crate) trait Set: numbers::Numbers + table::Tables {
-    type Words: words::BitWords<Set = Self>;
-}
-
-impl Set for Portable {
-    type Words = words::Words;
-}
-
-#[cfg(target_arch = "x86_64")]
-impl Set for Avx2 {
-    type Words = words::Avx2Words;
+    /// Returns words from bytes in the order of sets: the first of each block, the second of
+    /// each, and so on.
+    fn sorted(self, words: Words) -> Words;
 }
 
 /// Work that is compiled for each instruction set.
@@ -154,7 +69,7 @@ pub(crate) trait Kernel {
 pub(crate) enum Simd {
     Portable(Portable),
     #[cfg(target_arch = "x86_64")]
-    Avx2(Avx2),
+    Avx2(avx2::Avx2),
 }
 
 impl Default for Simd {
@@ -172,7 +87,7 @@ impl Simd {
         match set.checked() {
             InstructionSet::Portable => Simd::Portable(Portable),
             #[cfg(target_arch = "x86_64")]
-            InstructionSet::Avx2 => Simd::Avx2(Avx2(())),
+            InstructionSet::Avx2 => Simd::Avx2(avx2::Avx2(())),
             #[cfg(not(target_arch = "x86_64"))]
             _ => unreachable!("checked above"),
         }
@@ -188,6 +103,3 @@ impl Simd {
         }
     }
 }
-
-#[cfg(target_arch = "x86_64")]
-avx2! { kernels for Avx2 }

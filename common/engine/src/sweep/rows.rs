@@ -3,8 +3,7 @@
 //! All loops are plain: the compiler vectorizes them for the instruction set of the kernel.
 
 use crate::grid::Cell;
-use crate::simd::Set;
-use crate::simd::table::{LANES, TABLE};
+use crate::simd::{LANES, Set, TABLE};
 
 /// Steps left in a row of cells and in the row ahead of it, of all beams along a sense of an axis.
 /// Before and after each row is a cell off the map, which sees nothing.

@@ -6,16 +6,12 @@
 //! carries.
 
 use super::quad_rows::{Extent, QuadRows, RowLayout, Window, Windows};
-use crate::simd::words::{BitWords, Words};
-
-/// Words of a quad, aligned to a cache line.
-#[derive(Debug, Clone, Copy)]
-#[repr(align(64))]
-pub(crate) struct Aligned(pub Words);
+use crate::simd::Set;
+use crate::simd::words::Words;
 
 /// Rows carried over to the plane that is being added up, to the next one, and to the one
 /// after it.
-pub(crate) type Carries = [Vec<Aligned>; 3];
+pub(crate) type Carries = [Vec<Words>; 3];
 
 /// Beams with the same bearing modulo 8.
 #[derive(Debug, Clone, Default)]
@@ -85,36 +81,36 @@ impl Group {
     /// Adds up the windows plane by plane with carry-save adders, in the rows of a quad at the
     /// headings of a chunk, and adds the result to `total`, the sums of all groups.
     #[inline(always)]
-    pub(crate) fn add<W: BitWords>(
+    pub(crate) fn add<S: Set>(
         &self,
-        set: W::Set,
+        set: S,
         rows: (&RowLayout, &QuadRows, usize),
         carries: &mut Carries,
-        total: &mut [W],
+        total: &mut [Words],
     ) {
         let windows = Windows::new(rows, &self.extent);
         let [mut carries, mut next, mut after] = carries.each_mut().map(|rows| &mut rows[..]);
         let (mut carried, mut carried_next) = (0, 0);
         let mut planes = self.planes.iter();
-        let mut twos = W::empty(set);
+        let mut twos = Words::EMPTY;
         // Carry of the addition to the total.
-        let mut overflow = W::empty(set);
+        let mut overflow = Words::EMPTY;
         let (own, others) = total.split_at_mut(self.sum_planes().min(total.len()));
         for total in own {
-            let mut column = Column::new(set, twos, after);
+            let mut column = Column::new(twos, after);
             if let Some(plane) = planes.next() {
                 column.add_windows(windows, plane);
             }
             column.add_rows(&carries[..carried]);
             let (ones, made) = (column.ones, column.made);
             twos = column.twos;
-            let sum = ones.sorted().shift_down(self.shift);
+            let sum = set.sorted(ones).shift_down(self.shift);
             (*total, overflow) = total.full_adder(sum, overflow);
             (carries, next, after) = (next, after, carries);
             (carried, carried_next) = (carried_next, made);
         }
         for total in others {
-            (*total, overflow) = total.full_adder(overflow, W::empty(set));
+            (*total, overflow) = total.full_adder(overflow, Words::EMPTY);
         }
     }
 
@@ -124,30 +120,21 @@ impl Group {
     }
 }
 
-impl Aligned {
-    #[inline(always)]
-    fn read<W: BitWords>(&self, set: W::Set) -> W {
-        W::from_words(set, &self.0)
-    }
-}
-
 /// Adder of one plane: `ones` is its sum so far and `twos` that of the next plane. Each
 /// pair of rows that is added leaves a row in `carries` for the plane after these two.
-struct Column<'a, W: BitWords> {
-    set: W::Set,
-    ones: W,
-    twos: W,
-    carries: &'a mut [Aligned],
+struct Column<'a> {
+    ones: Words,
+    twos: Words,
+    carries: &'a mut [Words],
     made: usize,
 }
 
-impl<'a, W: BitWords> Column<'a, W> {
+impl<'a> Column<'a> {
     #[inline(always)]
-    fn new(set: W::Set, ones: W, carries: &'a mut [Aligned]) -> Self {
+    fn new(ones: Words, carries: &'a mut [Words]) -> Self {
         Column {
-            set,
             ones,
-            twos: W::empty(set),
+            twos: Words::EMPTY,
             carries,
             made: 0,
         }
@@ -155,34 +142,31 @@ impl<'a, W: BitWords> Column<'a, W> {
 
     #[inline(always)]
     fn add_windows(&mut self, windows: Windows<'_>, plane: &Plane) {
-        let set = self.set;
         // SAFETY: `windows` was made for the extent of the group, which has taken in all windows of
         // its planes and the one that fills up pairs.
-        let read = |window: &Window, reads| unsafe { windows.read(set, window, reads) };
-        for pair in &plane.pairs {
-            let [a, b] = pair;
+        let read = |window: &Window, reads| unsafe { windows.read(window, reads) };
+        for [a, b] in &plane.pairs {
             self.add_pair(read(a, b.reads), read(b, b.reads));
         }
     }
 
     #[inline(always)]
-    fn add_rows(&mut self, rows: &[Aligned]) {
-        let set = self.set;
+    fn add_rows(&mut self, rows: &[Words]) {
         let (pairs, rest) = rows.as_chunks();
-        for [a, b] in pairs {
-            self.add_pair(a.read(set), b.read(set));
+        for &[a, b] in pairs {
+            self.add_pair(a, b);
         }
-        for row in rest {
-            self.add_pair(row.read(set), W::empty(set));
+        for &row in rest {
+            self.add_pair(row, Words::EMPTY);
         }
     }
 
     #[inline(always)]
-    fn add_pair(&mut self, a: W, b: W) {
+    fn add_pair(&mut self, a: Words, b: Words) {
         let (carry, over);
         (self.ones, carry) = self.ones.full_adder(a, b);
-        (self.twos, over) = self.twos.full_adder(carry, W::empty(self.set));
-        self.carries[self.made].0 = over.to_words();
+        (self.twos, over) = self.twos.full_adder(carry, Words::EMPTY);
+        self.carries[self.made] = over;
         self.made += 1;
     }
 }
@@ -198,8 +182,8 @@ mod tests {
     use crate::instruction_set::InstructionSet;
     use crate::search::index::bits::{CHUNK, PLANES};
     use crate::search::index::sets::{Byte, SetRows};
-    use crate::simd::words::{EMPTY, QUAD};
-    use crate::simd::{Kernel, Set, Simd};
+    use crate::simd::words::QUAD;
+    use crate::simd::{Kernel, Simd};
 
     /// Exclusive limit of the bytes of a row.
     const STRIDES: usize = if cfg!(miri) { 5 } else { 50 };
@@ -240,15 +224,15 @@ mod tests {
             rows.fit(self.layout);
             for Rows(first, plain) in self.quads {
                 SetRows::of(*first, plain, |packed| {
-                    rows.take::<S::Words>(set, self.layout, packed);
+                    rows.take(set, self.layout, packed);
                 });
             }
-            let carries = vec![Aligned(EMPTY); self.group.carries()];
+            let carries = vec![Words::EMPTY; self.group.carries()];
             let mut carries = [carries.clone(), carries.clone(), carries];
-            let mut total = [S::Words::empty(set); PLANES];
+            let mut total = [Words::EMPTY; PLANES];
             let rows = (self.layout, &rows, self.chunk);
             self.group.add(set, rows, &mut carries, &mut total);
-            total.map(BitWords::to_words)
+            total
         }
     }
 
@@ -295,7 +279,7 @@ mod tests {
                             u32::from(sees(&quads[quads.len() - 1], rows, direction % directions, block)) << plane
                         };
                         let expected: u32 = windows.iter().map(sees).sum();
-                        let bit = |words: &Words| (words[lane / 64][block] >> (lane % 64) & 1) as u32;
+                        let bit = |words: &Words| (words.block(block) >> lane & 1) as u32;
                         let sum: u32 = planes.iter().enumerate().map(|(i, words)| bit(words) << i).sum();
                         prop_assert_eq!(sum, expected, "{} chunk {} lane {} block {}", set, chunk, lane, block);
                     }

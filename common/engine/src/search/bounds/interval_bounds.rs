@@ -11,8 +11,7 @@ use crate::search::index::bins::Bins;
 use crate::search::index::bits::ones;
 use crate::search::index::intervals::BlockIntervals;
 use crate::simd::headings::{self, BinVotes, HEADINGS};
-use crate::simd::{Kernel, Set, Simd};
-use crate::tables::TABLE;
+use crate::simd::{Kernel, Set, Simd, TABLE};
 
 /// A scan program laid out for bounds from intervals; made again for each scan.
 #[derive(Debug, Clone, Default)]

@@ -9,7 +9,8 @@ use crate::search::index::bins::Bins;
 use crate::search::index::bits::CHUNK;
 use crate::search::index::intervals::ROW_SHIFT;
 use crate::search::index::sets::{Byte, READ, SetRows};
-use crate::simd::words::{BYTES, BitWords, QUAD};
+use crate::simd::Set;
+use crate::simd::words::{BYTES, QUAD, Words};
 
 /// Layout of rows in memory.
 #[derive(Debug, Clone, Default)]
@@ -120,12 +121,7 @@ impl QuadRows {
 
     /// Replaces the rows by those of a quad.
     #[inline(always)]
-    pub(crate) fn take<W: BitWords>(
-        &mut self,
-        set: W::Set,
-        layout: &RowLayout,
-        rows: &SetRows<'_>,
-    ) {
+    pub(crate) fn take<S: Set>(&mut self, set: S, layout: &RowLayout, rows: &SetRows<'_>) {
         let (row, stride) = (layout.row, layout.stride);
         let (first, end) = (rows.rows.start, rows.rows.end);
         let taken = first.max(layout.needed.start)..end.min(layout.needed.end);
@@ -133,11 +129,11 @@ impl QuadRows {
         for i in taken.clone() {
             let own = &mut self.bytes[i * row..][..row];
             for (start, &mask) in (0..stride).step_by(READ).zip(rows.masks_of(i)) {
-                let words = W::expand(set, mask, bytes(&rows.bytes[kept..]));
+                let words = set.expand(mask, bytes(&rows.bytes[kept..]));
                 words.write(bytes_mut(&mut own[start..]));
                 kept += mask.count_ones() as usize;
             }
-            go_round::<W>(set, own, stride);
+            go_round(own, stride);
         }
         for used in self.used.clone() {
             if !taken.contains(&used) {
@@ -150,8 +146,8 @@ impl QuadRows {
 
 /// Repeats a row's turn, so that words can be read from any byte of the first turn on.
 #[inline(always)]
-fn go_round<W: BitWords>(set: W::Set, row: &mut [Byte], stride: usize) {
-    let turn = W::read(set, bytes(row));
+fn go_round(row: &mut [Byte], stride: usize) {
+    let turn = Words::read(bytes(row));
     // Bytes copied in excess are overwritten by the next turn.
     for start in (stride..stride + READ - 1).step_by(stride) {
         turn.write(bytes_mut(&mut row[start..]));
@@ -197,12 +193,12 @@ impl<'a> Windows<'a> {
     }
 
     /// Reads the bits of a window with `reads` reads, in the order of sets, see
-    /// [`BitWords::sorted`]. More reads than needed change nothing.
+    /// [`Set::sorted`]. More reads than needed change nothing.
     ///
     /// # Safety
     /// The extent within which windows are read must have taken this one in.
     #[inline(always)]
-    pub(crate) unsafe fn read<W: BitWords>(&self, set: W::Set, window: &Window, reads: u32) -> W {
+    pub(crate) unsafe fn read(&self, window: &Window, reads: u32) -> Words {
         let Windows {
             layout,
             bytes,
@@ -213,13 +209,12 @@ impl<'a> Windows<'a> {
         let place = unsafe { *layout.turns.get_unchecked(chunk + window.byte as usize) } as usize;
         let last = window.last as usize;
         let mut start = last.min(window.first as usize);
-        let mut all = W::empty(set);
-        for i in 0..reads {
+        let mut all = Words::EMPTY;
+        for _ in 0..reads {
             // SAFETY: `start` is at most `last` and a place less than the stride; the bytes
             // reach a word further, as was asserted of the extent.
             let word = unsafe { bytes.get_unchecked(start + place..start + place + READ) };
-            let words = W::read(set, self::bytes(word));
-            all = if i == 0 { words } else { all.or(words) };
+            all = all | Words::read(self::bytes(word));
             start = last.min(start + layout.row);
         }
         all

@@ -8,12 +8,12 @@
 
 use std::sync::atomic::{AtomicU16, Ordering};
 
-use super::group::{Aligned, Carries, Group};
+use super::group::{Carries, Group};
 use super::quad_rows::QuadRows;
 use super::set_program::SetProgram;
 use crate::search::index::bits;
 use crate::search::index::sets::{Quad, RangeSets};
-use crate::simd::words::{BitWords, EMPTY, QUAD, Words};
+use crate::simd::words::{QUAD, Words};
 use crate::simd::{Kernel, Set};
 
 /// Known limits of the blocks of a quad: votes that none of them exceeds in each chunk, and
@@ -56,13 +56,13 @@ impl SetBounds {
         self.chunks.extend(headings.map(|valid| Chunk {
             greatest: [0; QUAD],
             valid,
-            reach: EMPTY,
+            reach: Words::EMPTY,
         }));
         self.reads = 0;
         self.rows.fit(&program.layout);
         let carries = program.groups.iter().map(Group::carries).max();
         for rows in &mut self.carries {
-            rows.resize(carries.unwrap_or(0), Aligned(EMPTY));
+            rows.resize(carries.unwrap_or(0), Words::EMPTY);
         }
     }
 
@@ -81,7 +81,7 @@ impl SetBounds {
     /// the first heading, and a bit for each from there on.
     pub(crate) fn reach(&self, place: usize) -> impl Iterator<Item = (usize, u64)> {
         bits::windows(self.chunks.len(), move |chunk| {
-            bits::of_block(&self.chunks[chunk].reach, place)
+            self.chunks[chunk].reach.block(place)
         })
     }
 }
@@ -129,9 +129,9 @@ impl SetProgram {
             ..
         } = bounds;
         let chunk = &mut chunks[place];
-        let mut total = [S::Words::empty(set); bits::PLANES];
+        let mut total = [Words::EMPTY; bits::PLANES];
         let total = &mut total[..self.planes];
-        let valid = S::Words::from_words(set, &chunk.reach);
+        let valid = chunk.reach;
         let mut reach = valid;
         for (left, group) in self.groups.iter().enumerate().rev() {
             if group.possible == 0 {
@@ -144,14 +144,14 @@ impl SetProgram {
             };
             let rest: u16 = self.groups[..left].iter().map(|group| group.possible).sum();
             let least = least.saturating_sub(rest);
-            reach = bits::at_least(set, self.planes, |plane| total[plane], least, valid);
+            reach = bits::at_least(total, least, valid);
             if reach.is_empty() {
                 break;
             }
         }
-        chunk.reach = reach.to_words();
+        chunk.reach = reach;
         if !reach.is_empty() {
-            chunk.greatest = bits::greatest_of_each(set, self.planes, |plane| total[plane], reach);
+            chunk.greatest = bits::greatest_of_each(total, reach);
             for (greatest, most) in greatest.iter_mut().zip(chunk.greatest) {
                 *greatest = most.max(*greatest);
             }
@@ -186,17 +186,17 @@ impl Kernel for Bounding<'_, '_> {
         for (i, chunk) in bounds.chunks.iter_mut().enumerate() {
             chunk.greatest = [0; QUAD];
             let valid = if matters(i) { chunk.valid } else { 0 };
-            chunk.reach = bits::words(|place| quad.blocks[place].map_or(0, |_| valid));
-            any |= chunk.reach != EMPTY;
+            chunk.reach = Words::of(|place| quad.blocks[place].map_or(0, |_| valid));
+            any |= chunk.reach != Words::EMPTY;
         }
         if !any {
             return;
         }
         let rows = sets.quad(quad.index);
-        bounds.rows.take::<S::Words>(set, &program.layout, &rows);
+        bounds.rows.take(set, &program.layout, &rows);
         let least = known.map(|(_, least)| least.div_ceil(program.unit));
         for chunk in 0..bounds.chunks.len() {
-            if bounds.chunks[chunk].reach != EMPTY {
+            if bounds.chunks[chunk].reach != Words::EMPTY {
                 program.run_chunk(set, least, chunk, bounds);
             }
         }

@@ -41,8 +41,8 @@ pub(crate) struct Bins {
 /// The line `start + (steps · slope >> 16)`, in bins.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Line {
-    pub start: u16,
-    pub slope: u16,
+    start: u16,
+    slope: u16,
 }
 
 impl Bins {
@@ -111,7 +111,7 @@ impl Bins {
 
 impl Line {
     #[inline(always)]
-    fn at(self, steps: u16) -> u16 {
+    pub(crate) fn at(self, steps: u16) -> u16 {
         self.start + ((u32::from(steps) * u32::from(self.slope)) >> 16) as u16
     }
 }

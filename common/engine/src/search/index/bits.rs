@@ -4,7 +4,7 @@
 //! numbers.
 
 pub(crate) use crate::grid::ones;
-use crate::simd::words::{BitWords, QUAD, Words};
+use crate::simd::words::{QUAD, Words};
 
 /// Headings of a chunk: the 128 bits of a word, less those that shifting takes up.
 pub(crate) const CHUNK: usize = 120;
@@ -15,69 +15,39 @@ const WHOLE: u128 = u128::MAX >> (128 - CHUNK);
 /// Largest number of planes: numbers fit 16 bits.
 pub(crate) const PLANES: usize = 16;
 
-/// Returns the 128 bits of a block.
+/// Returns the greatest of the numbers of each block that `among` selects.
 #[inline(always)]
-pub(crate) fn of_block(words: &Words, block: usize) -> u128 {
-    u128::from(words[0][block]) | u128::from(words[1][block]) << 64
-}
-
-/// Returns the words of a quad from the 128 bits of each block.
-#[inline(always)]
-pub(crate) fn words(of_block: impl Fn(usize) -> u128) -> Words {
-    let words: [u128; QUAD] = std::array::from_fn(of_block);
-    [
-        words.map(|word| word as u64),
-        words.map(|word| (word >> 64) as u64),
-    ]
-}
-
-/// Returns the greatest of the numbers of each block, of this many planes, that `among`
-/// selects.
-#[inline(always)]
-pub(crate) fn greatest_of_each<W: BitWords>(
-    set: W::Set,
-    planes: usize,
-    number: impl Fn(usize) -> W,
-    among: W,
-) -> [u16; QUAD] {
-    let (mut candidates, mut value) = (among, W::empty(set));
-    for plane in (0..planes).rev() {
-        let higher = candidates.and(number(plane));
+pub(crate) fn greatest_of_each(planes: &[Words], among: Words) -> [u16; QUAD] {
+    let (mut candidates, mut value) = (among, Words::EMPTY);
+    for (i, &plane) in planes.iter().enumerate().rev() {
+        let higher = candidates & plane;
         let any = higher.filled();
-        candidates = higher.or(candidates.without(any));
-        value = value.or(any.and(W::splat(set, 1 << plane)));
+        candidates = higher | candidates & !any;
+        value = value | any & Words::of(|_| 1 << i);
     }
-    value.to_words()[0].map(|value| value as u16)
+    value.0[0].map(|value| value as u16)
 }
 
-/// Returns a bit for each number, of this many planes, that `among` selects and that is at
-/// least `least`.
+/// Returns a bit for each number that `among` selects and that is at least `least`.
 #[inline(always)]
-pub(crate) fn at_least<W: BitWords>(
-    set: W::Set,
-    planes: usize,
-    number: impl Fn(usize) -> W,
-    least: u16,
-    among: W,
-) -> W {
+pub(crate) fn at_least(planes: &[Words], least: u16, among: Words) -> Words {
     if least == 0 {
         return among;
     }
-    if usize::from(least) >> planes != 0 {
-        return W::empty(set);
+    if usize::from(least) >> planes.len() != 0 {
+        return Words::EMPTY;
     }
     // Equal so far from the highest plane down, or greater already.
-    let (mut equal, mut greater) = (among, W::empty(set));
-    for plane in (0..planes).rev() {
-        let bits = number(plane);
-        if least >> plane & 1 == 1 {
-            equal = equal.and(bits);
+    let (mut equal, mut greater) = (among, Words::EMPTY);
+    for (i, &plane) in planes.iter().enumerate().rev() {
+        if least >> i & 1 == 1 {
+            equal = equal & plane;
         } else {
-            greater = greater.or(equal.and(bits));
-            equal = equal.without(bits);
+            greater = greater | equal & plane;
+            equal = equal & !plane;
         }
     }
-    greater.or(equal)
+    greater | equal
 }
 
 /// Returns the set bits of this many chunks in windows: the place of a window's first bit,
@@ -123,24 +93,23 @@ mod tests {
     use proptest::prelude::*;
 
     use super::*;
-    use crate::simd::Portable;
-    use crate::simd::words::EMPTY;
 
     proptest! {
         #[test]
         fn planes_are_compared_like_plain_numbers(
-            plain in vec(any::<u16>(), QUAD * 128), among in any::<Words>(), least in any::<u16>(),
+            plain in vec(any::<u16>(), QUAD * 128), among in any::<[[u64; QUAD]; 2]>(), least in any::<u16>(),
         ) {
-            let mut planes = [EMPTY; PLANES];
+            let among = Words(among);
+            let mut planes = [Words::EMPTY; PLANES];
             for (i, &number) in plain.iter().enumerate() {
                 for (plane, bits) in planes.iter_mut().enumerate() {
-                    bits[i / 64 % 2][i / 128] |= u64::from(number >> plane & 1) << (i % 64);
+                    bits.0[i / 64 % 2][i / 128] |= u64::from(number >> plane & 1) << (i % 64);
                 }
             }
-            let found = at_least(Portable, PLANES, |plane| planes[plane], least, among);
-            let greatest_of_each = greatest_of_each(Portable, PLANES, |plane| planes[plane], among);
+            let found = at_least(&planes, least, among);
+            let greatest_of_each = greatest_of_each(&planes, among);
             for block in 0..QUAD {
-                let (among, found) = (of_block(&among, block), of_block(&found, block));
+                let (among, found) = (among.block(block), found.block(block));
                 let numbers = &plain[128 * block..][..128];
                 let is_selected = |i: usize| among >> i & 1 == 1;
                 let selected = |i: &usize| is_selected(*i);
@@ -150,7 +119,7 @@ mod tests {
                     prop_assert_eq!(found >> i & 1 == 1, is_selected(i) && number >= least);
                 }
             }
-            prop_assert_eq!(words(|block| of_block(&among, block)), among);
+            prop_assert_eq!(Words::of(|block| among.block(block)), among);
         }
 
         #[test]

@@ -81,7 +81,7 @@ impl Kernel for Sweeping<'_> {
     type Result = ();
 
     #[inline(always)]
-    fn run<S: Set>(self, lanes: S) {
+    fn run<S: Set>(self, _: S) {
         let Sweeping {
             source,
             part,
@@ -118,7 +118,7 @@ impl Kernel for Sweeping<'_> {
                         2 => (&*b, &mut *c),
                         _ => (&*c, &mut *swept),
                     };
-                    masks.sweep(lanes, row, shift, next, ranges);
+                    masks.sweep(row, shift, next, ranges);
                 }
                 let rows = [&*a, b, c, swept];
                 let mut noting = Noting {
@@ -129,7 +129,7 @@ impl Kernel for Sweeping<'_> {
                     blocks: &strip_blocks,
                 };
                 let lines = source.bins.lines(direction.class);
-                pool(lanes, rows, lines, planes.of(slot), &mut noting);
+                pool(rows, lines, planes.of(slot), &mut noting);
             }
             planes.write(&strip_blocks, packed);
         }

@@ -2,13 +2,19 @@
 
 use super::strip::Row;
 use super::wide::{Noting, WIDE};
-use super::{ALL, PACKED, SIDE, STRETCHES};
+use super::{ALL, CELLS, PACKED, SIDE, STRETCHES};
 use crate::search::index::bins::{Bins, Line};
-use crate::simd::numbers::Numbers;
+
+/// Blocks that are pooled at a time. Loops over their numbers have this constant length, so that
+/// the compiler keeps them in registers.
+const COUNT: usize = 16;
+
+/// A number for each of these blocks.
+type Numbers = [u16; COUNT];
 
 /// Pools the ranges of a strip's four rows of cells block by block, and packs the intervals
 /// of their bins, by `lines`, row by row of the packed format. Notes the views where they
-/// are wide. Skips vectors in which no block is wanted.
+/// are wide. Skips neighbours of which no block is wanted.
 ///
 /// Ranges up to the middle between the shortest and the longest range of a block are near,
 /// the rest far; or only those in the first quarter are near, if the sum of both widths is
@@ -18,52 +24,45 @@ use crate::simd::numbers::Numbers;
 ///
 /// [`NO_RANGE`]: crate::program::NO_RANGE
 #[inline(always)]
-pub(super) fn pool<L: Numbers, const LINES: usize>(
-    lanes: L,
+pub(super) fn pool<const LINES: usize>(
     rows: [&Row; SIDE],
     lines: &[Line; LINES],
     packed: [&mut [u8]; PACKED],
     noting: &mut Noting<'_>,
 ) {
-    let cells: [&[u16]; SIDE * SIDE] = std::array::from_fn(|i| rows[i / SIDE].plane(i % SIDE));
-    let [nearest, farthest, widths] = packed;
-    let nearest = nearest.chunks_exact_mut(L::COUNT);
-    let farthest = farthest.chunks_exact_mut(L::COUNT);
-    let widths = widths.chunks_exact_mut(L::COUNT);
-    for (chunk, ((nearest, farthest), widths)) in nearest.zip(farthest).zip(widths).enumerate() {
-        let start = chunk * L::COUNT;
-        if start >= cells[0].len() {
-            break;
-        }
-        let wanted = noting.blocks.wanted(start, L::COUNT);
+    let cells: [&[u16]; CELLS] = std::array::from_fn(|i| rows[i / SIDE].plane(i % SIDE));
+    let [nearest, farthest, widths] = packed.map(|row| row.as_chunks_mut::<COUNT>().0);
+    for start in (0..cells[0].len()).step_by(COUNT) {
+        let wanted = noting.blocks.wanted(start, COUNT);
         if wanted == 0 {
             continue;
         }
-        let one = lanes.splat(1);
-        let mut steps = [lanes.splat(0); SIDE * SIDE];
+        let mut steps = [[0; COUNT]; CELLS];
         for (steps, cells) in steps.iter_mut().zip(&cells) {
-            *steps = lanes.sub(lanes.load(&cells[start..]), one);
+            let ranges: &Numbers = cells[start..].first_chunk().expect("whole cache lines");
+            *steps = ranges.map(|range| range.wrapping_sub(1));
         }
-        let (first, last) = outermost(lanes, &steps);
-        let [nearest_bin, farthest_bin] = bin(lanes, lines, [first, last]);
-        // Turns NOTHING into 0.
-        let farthest_bin = lanes.sub_saturating(
-            lanes.and(
-                lanes.add(farthest_bin, one),
-                lanes.splat(u16::from(u8::MAX)),
-            ),
-            one,
-        );
-        let middle = lanes.average(first, lanes.add(last, one));
-        let quarter = lanes.average(first, middle);
+        let (first, last) = outermost(&steps);
+        let [nearest_bin, farthest_bin] = bin(lines, [first, last]);
+        let nothing = u16::from(Bins::NOTHING);
+        let farthest_bin = farthest_bin.map(|bin| if bin == nothing { 0 } else { bin });
+        let middle = each(first, last, |first, last| {
+            average(first, last.wrapping_add(1))
+        });
+        let quarter = each(first, middle, average);
         let ends = [nearest_bin, farthest_bin];
-        let by_middle = split(lanes, lines, ends, part(lanes, &steps, middle));
-        let by_quarter = split(lanes, lines, ends, part(lanes, &steps, quarter));
-        let narrower = lanes.min(by_middle, by_quarter);
-        lanes.store_bytes(nearest_bin, nearest);
-        lanes.store_bytes(farthest_bin, farthest);
-        lanes.store_bytes(lanes.and(narrower, lanes.splat(u16::from(u8::MAX))), widths);
-        let wide = lanes.at_least(narrower, lanes.splat(u16::from(WIDE) << u8::BITS)) & wanted;
+        let by_middle = split(lines, ends, part(&steps, middle));
+        let by_quarter = split(lines, ends, part(&steps, quarter));
+        let narrower = each(by_middle, by_quarter, u16::min);
+        let chunk = start / COUNT;
+        nearest[chunk] = nearest_bin.map(|bin| bin as u8);
+        farthest[chunk] = farthest_bin.map(|bin| bin as u8);
+        widths[chunk] = narrower.map(|widths| widths as u8);
+        let sums = narrower.map(|widths| widths >> u8::BITS).into_iter();
+        let is_wide = sums
+            .enumerate()
+            .map(|(i, sum)| u64::from(sum >= WIDE.into()) << i);
+        let wide = is_wide.fold(0, |all, bit| all | bit) & wanted;
         if wide != 0 {
             noting.note(start, wide, &cells);
         }
@@ -74,84 +73,83 @@ pub(super) fn pool<L: Numbers, const LINES: usize>(
 /// widths above them, so that a wider split is a greater number. Widths go from the first
 /// bin to that of the last near number, and from that of the first far one to the last bin.
 #[inline(always)]
-fn split<L: Numbers, const LINES: usize>(
-    lanes: L,
+fn split<const LINES: usize>(
     lines: &[Line; LINES],
-    [first, last]: [L::Vector; 2],
-    parts: [L::Vector; 2],
-) -> L::Vector {
-    let [near_last, far_first] = bin(lanes, lines, parts);
-    let near = lanes.sub_saturating(near_last, first);
-    let far = lanes.sub_saturating(last, far_first);
-    let both = lanes.min(lanes.add(near, far), lanes.splat(u16::from(u8::MAX)));
-    let nibbles = lanes.or(nibble(lanes, near), lanes.shift_nibble(nibble(lanes, far)));
-    lanes.or(lanes.shift_nibble(lanes.shift_nibble(both)), nibbles)
+    [first, last]: [Numbers; 2],
+    parts: [Numbers; 2],
+) -> Numbers {
+    let [near_last, far_first] = bin(lines, parts);
+    let near = each(near_last, first, u16::saturating_sub);
+    let far = each(last, far_first, u16::saturating_sub);
+    each(near, far, |near, far| {
+        (near + far).min(u8::MAX.into()) << u8::BITS | nibble(far) << 4 | nibble(near)
+    })
 }
 
-/// Returns the nibbles that stand for widths, some of which are rounded up.
+/// Returns the nibble that stands for a width; some widths are rounded up.
 #[inline(always)]
-fn nibble<L: Numbers>(lanes: L, widths: L::Vector) -> L::Vector {
-    let mut least = lanes.min(widths, lanes.splat(u16::from(ALL)));
+fn nibble(width: u16) -> u16 {
+    let mut least = width.min(ALL.into());
     // From each stretch on, the width is the line `step · nibble - lag`.
     let (mut step, mut lag) = (1, 0);
     for (from, by) in STRETCHES {
         step += u16::from(by);
         lag += u16::from(by) * u16::from(from);
-        // Steps are powers of two.
-        let (up, share) = (
-            lanes.splat(lag + step - 1),
-            lanes.splat(1 << (16 - step.ilog2())),
-        );
-        least = lanes.min(
-            least,
-            lanes.mul_high(lanes.add_saturating(widths, up), share),
-        );
+        least = least.min((width + lag + step - 1) / step);
     }
     least
 }
 
-/// Returns the first and the last number of each lane.
+/// Returns the first and the last number of each block.
 #[inline(always)]
-fn outermost<L: Numbers>(lanes: L, steps: &[L::Vector; SIDE * SIDE]) -> (L::Vector, L::Vector) {
+fn outermost(steps: &[Numbers; CELLS]) -> (Numbers, Numbers) {
+    let greater = |a: u16, b: u16| a.cast_signed().max(b.cast_signed()).cast_unsigned();
     let (mut first, mut last) = (steps[0], steps[0]);
     for &steps in &steps[1..] {
-        first = lanes.min(first, steps);
-        last = lanes.max_signed(last, steps);
+        first = each(first, steps, u16::min);
+        last = each(last, steps, greater);
     }
     (first, last)
 }
 
 /// Returns the last of the numbers below `far`, and the first of the others.
 #[inline(always)]
-fn part<L: Numbers>(lanes: L, steps: &[L::Vector; SIDE * SIDE], far: L::Vector) -> [L::Vector; 2] {
+fn part(steps: &[Numbers; CELLS], far: Numbers) -> [Numbers; 2] {
     // Counted from there, those below wrap around to the greatest numbers.
-    let mut far_first = lanes.sub(steps[0], far);
+    let mut far_first = each(steps[0], far, u16::wrapping_sub);
     let mut near_last = far_first;
     for &steps in &steps[1..] {
-        let beyond = lanes.sub(steps, far);
-        far_first = lanes.min(far_first, beyond);
-        near_last = lanes.max(near_last, beyond);
+        let beyond = each(steps, far, u16::wrapping_sub);
+        far_first = each(far_first, beyond, u16::min);
+        near_last = each(near_last, beyond, u16::max);
     }
-    [lanes.add(far, near_last), lanes.add(far, far_first)]
+    [near_last, far_first].map(|steps| each(far, steps, u16::wrapping_add))
 }
 
 /// Returns the bins of ranges that are one step longer than these numbers.
 #[inline(always)]
-fn bin<L: Numbers, const N: usize, const LINES: usize>(
-    lanes: L,
+fn bin<const N: usize, const LINES: usize>(
     lines: &[Line; LINES],
-    mut steps: [L::Vector; N],
-) -> [L::Vector; N] {
-    for steps in &mut steps {
-        *steps = lanes.add_saturating(*steps, lanes.splat(1));
-    }
-    let mut bins = [lanes.splat(u16::from(Bins::NOTHING)); N];
+    steps: [Numbers; N],
+) -> [Numbers; N] {
+    let ranges = steps.map(|steps| steps.map(|steps| steps.saturating_add(1)));
+    let mut bins = [[u16::from(Bins::NOTHING); COUNT]; N];
     for line in lines {
-        let (start, slope) = (lanes.splat(line.start), lanes.splat(line.slope));
-        for i in 0..N {
-            let bin = lanes.add(start, lanes.mul_high(steps[i], slope));
-            bins[i] = lanes.min(bins[i], bin);
+        for (bins, &ranges) in bins.iter_mut().zip(&ranges) {
+            *bins = each(*bins, ranges, |bin, range| line.at(range).min(bin));
         }
     }
     bins
+}
+
+/// `(a + b + 1) / 2`.
+#[inline(always)]
+fn average(a: u16, b: u16) -> u16 {
+    ((u32::from(a) + u32::from(b) + 1) >> 1) as u16
+}
+
+/// Joins the numbers of each block.
+#[inline(always)]
+fn each(a: Numbers, b: Numbers, join: impl Fn(u16, u16) -> u16) -> Numbers {
+    std::array::from_fn(|i| join(a[i], b[i]))
 }

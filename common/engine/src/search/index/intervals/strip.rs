@@ -9,7 +9,6 @@ use super::SIDE;
 use crate::directions::swap_unless;
 use crate::grid::{Cell, Grid};
 use crate::program::NO_RANGE;
-use crate::simd::numbers::Numbers;
 
 /// Numbers in a cache line.
 const LINE: usize = 32;
@@ -124,24 +123,16 @@ impl StripMasks {
     /// [`NO_RANGE`] if it blocks rays without a hit, else one step more than the range of its
     /// next cell, which is `shift` cells on in the row `next`.
     #[inline(always)]
-    pub(super) fn sweep<L: Numbers>(
-        &self,
-        lanes: L,
-        row: usize,
-        shift: i64,
-        next: &Row,
-        ranges: &mut Row,
-    ) {
-        let one = lanes.splat(1);
+    pub(super) fn sweep(&self, row: usize, shift: i64, next: &Row, ranges: &mut Row) {
         for plane in 0..SIDE {
-            let next = next.beside(plane, shift).chunks_exact(L::COUNT);
-            let pass = self.pass[row].plane(plane).chunks_exact(L::COUNT);
-            let lose = self.lose[row].plane(plane).chunks_exact(L::COUNT);
-            let ranges = ranges.plane_mut(plane).chunks_exact_mut(L::COUNT);
-            for (((next, pass), lose), ranges) in next.zip(pass).zip(lose).zip(ranges) {
-                let further = lanes.add_saturating(lanes.load(next), one);
-                let passed = lanes.and(further, lanes.load(pass));
-                lanes.store(lanes.or(passed, lanes.load(lose)), ranges);
+            let next = next.beside(plane, shift);
+            let masks = self.pass[row]
+                .plane(plane)
+                .iter()
+                .zip(self.lose[row].plane(plane));
+            let ranges = ranges.plane_mut(plane).iter_mut();
+            for ((range, &next), (&pass, &lose)) in ranges.zip(next).zip(masks) {
+                *range = next.saturating_add(1) & pass | lose;
             }
         }
     }

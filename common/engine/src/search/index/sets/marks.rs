@@ -5,18 +5,21 @@ use std::ops::RangeInclusive;
 use crate::search::index::bins::Bins;
 use crate::search::index::intervals::{ROW_SHIFT, far_start, near_end};
 use crate::simd::Set;
-use crate::simd::numbers::{MARKED, MarkedRows};
+use crate::simd::headings::{HEADINGS, present};
 
 /// Number of directions that are marked at a time.
-pub(super) const CHUNK: usize = MARKED;
+pub(super) const CHUNK: usize = HEADINGS;
+
+/// A byte for the near and for the far interval of each of four blocks, in 64 directions.
+type ByInterval = [[u8; CHUNK]; 8];
 
 /// The intervals of joined blocks in 64 directions, for rows of some bins each.
 #[derive(Debug, Clone)]
 pub(super) struct Chunk {
     /// First bin of each interval. If there is none it is 0, which is no bin.
-    firsts: MarkedRows,
+    firsts: ByInterval,
     /// Largest distance from the first bin to the end of a row that meets the interval.
-    reaches: MarkedRows,
+    reaches: ByInterval,
     nearest: [u8; CHUNK],
     farthest: [u8; CHUNK],
 }
@@ -81,6 +84,13 @@ impl Chunk {
     #[inline(always)]
     pub(super) fn mark<S: Set>(&self, set: S, row: u8) -> u64 {
         let end = (row << ROW_SHIFT) | LAST;
-        set.any_within(end, &self.firsts, &self.reaches)
+        // Distance of the row's end beyond the nearest reach; bytes wrap from 255 to 0.
+        let mut off = [u8::MAX; CHUNK];
+        for (firsts, reaches) in self.firsts.iter().zip(&self.reaches) {
+            for ((off, first), &reach) in off.iter_mut().zip(firsts).zip(reaches) {
+                *off = (*off).min(end.wrapping_sub(*first).saturating_sub(reach));
+            }
+        }
+        !present(set, off)
     }
 }
