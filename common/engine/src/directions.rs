@@ -91,6 +91,18 @@ impl Directions {
     }
 }
 
+/// Returns the direction of a beam at a heading of a turn, as an index; heading and bearing are
+/// below `count`.
+#[inline(always)]
+pub(crate) fn turned(heading: usize, bearing: usize, count: usize) -> usize {
+    let direction = heading + bearing;
+    if direction < count {
+        direction
+    } else {
+        direction - count
+    }
+}
+
 impl Direction {
     /// Derives the direction from the first octant, so that mirrored directions have slopes equal
     /// to the last bit.

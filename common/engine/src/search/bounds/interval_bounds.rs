@@ -5,7 +5,7 @@
 //! headings.
 
 use super::sectors;
-use crate::directions::Directions;
+use crate::directions::{Directions, turned};
 use crate::program::ScanProgram;
 use crate::search::index::bins::Bins;
 use crate::search::index::bits::ones;
@@ -82,16 +82,6 @@ impl IntervalProgram {
             least,
             bounds,
         })
-    }
-
-    #[inline(always)]
-    fn direction(&self, beam: &IntervalBeam, heading: usize) -> usize {
-        let direction = heading + usize::from(beam.bearing);
-        if direction < self.directions {
-            direction
-        } else {
-            direction - self.directions
-        }
     }
 }
 
@@ -213,7 +203,7 @@ impl<const DETAILED: bool> Kernel for Bounding<'_, DETAILED> {
         for (beams, rest) in program.sectors() {
             let mut votes = [0; HEADINGS];
             for beam in beams {
-                let direction = program.direction(beam, first);
+                let direction = turned(first, beam.bearing.into(), program.directions);
                 let of_beam = beam.votes.add(set, rows.from(direction), &mut votes);
                 if DETAILED {
                     bounds.voting.push(headings::present(set, of_beam));

@@ -4,7 +4,7 @@
 //! whole block take one table look-up for each cell, all of them at once (`tables.rs`).
 
 use super::block_ranges::{BlockRanges, View};
-use crate::directions::Directions;
+use crate::directions::{Directions, turned};
 use crate::program::ScanProgram;
 use crate::search::bounds::sectors;
 use crate::search::index::bits;
@@ -107,13 +107,7 @@ impl LeafProgram {
 
     #[inline(always)]
     fn direction(&self, beam: usize, heading: usize) -> usize {
-        let direction = heading + self.bearings[beam];
-        let count = self.classes.len();
-        if direction < count {
-            direction
-        } else {
-            direction - count
-        }
+        turned(heading, self.bearings[beam], self.classes.len())
     }
 
     /// Returns the direction of a beam at a heading, and the beam's table there.
