@@ -212,7 +212,7 @@ pub(crate) fn plain_votes_within(
             });
         }
     }
-    collector.finished(0)
+    collector.finished()
 }
 
 /// An arbitrary scan: readings from nothing to beyond the grid, any taper.

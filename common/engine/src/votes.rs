@@ -102,6 +102,8 @@ pub(crate) struct Collector {
     crowded_below: u16,
     /// Best intensity, if not even all poses with it fit.
     cut: Option<u16>,
+    /// Number of poses whose intensity was computed, taken or not.
+    pub evaluated: u64,
 }
 
 impl Collector {
@@ -120,6 +122,7 @@ impl Collector {
         self.best_taken = 0;
         self.crowded_below = 1;
         self.cut = None;
+        self.evaluated = 0;
     }
 
     /// Smallest intensity that can still matter; at least 1.
@@ -146,6 +149,7 @@ impl Collector {
 
     /// Takes the poses of an intensity image, row by row, at one heading.
     pub(crate) fn take_field(&mut self, field: &[u16], width: usize, heading: u16) {
+        self.evaluated += field.len() as u64;
         for (y, row) in (0..).zip(field.chunks_exact(width)) {
             // Few rows contain a pose that matters, and a maximum is quick to compute.
             let floor = self.floor();
@@ -179,7 +183,8 @@ impl Collector {
     }
 
     /// Merges another collector, as if one had taken the poses of both.
-    pub(crate) fn merge(&mut self, other: &Collector) {
+    fn merge(&mut self, other: &Collector) {
+        self.evaluated += other.evaluated;
         self.crowded_below = self.crowded_below.max(other.crowded_below);
         self.raise_best(other.best);
         for &vote in &other.votes {
@@ -187,6 +192,16 @@ impl Collector {
         }
         self.cut = self.cut.max(other.cut);
         self.raise_best(self.best);
+    }
+
+    /// Merges the collectors of all threads into the first one, and moves its result to `outcome`.
+    pub(crate) fn finish_all<'a>(
+        mut collectors: impl Iterator<Item = &'a mut Collector>,
+        outcome: &mut VoteSet,
+    ) {
+        let own = collectors.next().expect("a thread");
+        collectors.for_each(|other| own.merge(other));
+        own.finish(outcome);
     }
 
     /// Drops poses below the floor, then whole levels from below until the rest fits. The best
@@ -210,7 +225,7 @@ impl Collector {
 
     /// Moves the result, sorted, to `outcome`. Votes are swapped, not copied: the old ones of the
     /// outcome become the next buffer.
-    pub(crate) fn finish(&mut self, poses_evaluated: u64, outcome: &mut VoteSet) {
+    pub(crate) fn finish(&mut self, outcome: &mut VoteSet) {
         self.make_room();
         self.votes.sort_unstable_by_key(order);
         let best_is_cut = self.cut == Some(self.best);
@@ -219,15 +234,15 @@ impl Collector {
         outcome.best = self.votes.first().map_or(0, |vote| vote.intensity);
         outcome.truncated = best_is_cut || self.crowded_below > self.share_floor();
         outcome.cut = false;
-        outcome.poses_evaluated = poses_evaluated;
+        outcome.poses_evaluated = self.evaluated;
         std::mem::swap(&mut outcome.votes, &mut self.votes);
         self.votes.clear();
     }
 
     #[cfg(test)]
-    pub(crate) fn finished(mut self, poses_evaluated: u64) -> VoteSet {
+    pub(crate) fn finished(mut self) -> VoteSet {
         let mut outcome = VoteSet::default();
-        self.finish(poses_evaluated, &mut outcome);
+        self.finish(&mut outcome);
         outcome
     }
 }
@@ -255,7 +270,7 @@ mod tests {
                 intensity,
             });
         }
-        collector.finished(0)
+        collector.finished()
     }
 
     fn levels(set: &VoteSet) -> Vec<u16> {
@@ -350,7 +365,7 @@ mod tests {
             for (x, &intensity) in intensities.iter().enumerate().rev() {
                 backward.take(Vote { x: x as u16, y: 0, heading: 0, intensity });
             }
-            let backward = backward.finished(0);
+            let backward = backward.finished();
             prop_assert_eq!(&backward, &forward);
             // The result does not depend on the number of collectors either.
             let mut parts = [Collector::new(config), Collector::new(config), Collector::new(config)];
@@ -361,7 +376,7 @@ mod tests {
                 all.merge(&part);
                 all
             };
-            let merged = parts.into_iter().reduce(merge).unwrap().finished(0);
+            let merged = parts.into_iter().reduce(merge).unwrap().finished();
             prop_assert_eq!(&merged, &forward);
             // The result is complete down to the certified floor.
             let certified = intensities.iter().filter(|&&i| i > 0 && i >= forward.certified_floor).count();

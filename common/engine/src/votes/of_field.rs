@@ -24,7 +24,7 @@ impl FieldVotes {
     ) {
         self.collector.start(config);
         self.collector.take_field(field, width, heading);
-        self.collector.finish(field.len() as u64, found);
+        self.collector.finish(found);
         let wanted = config.candidates as usize;
         if wanted > 0 && found.best > 0 {
             best_of_blocks(field, width, heading, &mut self.bests);

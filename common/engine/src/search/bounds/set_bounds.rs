@@ -209,11 +209,8 @@ mod tests {
 
     use super::*;
     use crate::instruction_set::InstructionSet;
-    use crate::limits::Limits;
     use crate::reference;
-    use crate::search::index::bins::Bins;
-    use crate::search::index::intervals::RangeIntervals;
-    use crate::search::index::within::Within;
+    use crate::search::index::SearchIndex;
     use crate::simd::Simd;
     use crate::testing::{any_grid, any_scan, space_of};
 
@@ -225,32 +222,28 @@ mod tests {
             let space = space_of(&grid, 8 * headings as u32);
             let directions = &space.directions;
             let program = scan.program(&space);
-            let bins = Bins::new(&grid, directions);
-            let (intervals, wide) = RangeIntervals::of_all(&grid, directions, &bins, InstructionSet::best());
-            let fine = RangeSets::new(&intervals, &wide);
+            let index = SearchIndex::new(&grid, &space);
             // Some headings, spread over the turn, are enough to meet any error.
             let fields: Vec<_> = (0..directions.count()).step_by(1 + headings / 8)
                 .map(|heading| (heading, reference::field(&grid, &program, &space, heading))).collect();
             // As many votes as any chunk can have.
             let possible: Vec<_> = (0..headings).map(|_| AtomicU16::new(program.highest_possible() as u16)).collect();
-            for sets in [&fine, &fine.joined()] {
+            for sets in [&index.fine, &index.coarse] {
                 let mut of_all_sets = Vec::new();
                 for instruction_set in InstructionSet::available() {
                     let mut set_program = SetProgram::default();
-                    set_program.make(&program, directions, &bins, Simd::new(instruction_set));
-                    let all = Within::new(Limits::none(grid.width()), &grid);
+                    set_program.make(&program, directions, &index.bins, Simd::new(instruction_set));
                     let mut bounds = SetBounds::default();
-                    bounds.fit(&set_program, all.headings(directions.count()));
+                    bounds.fit(&set_program, index.headings(directions.count()));
                     let mut found = vec![0; sets.blocks()];
-                    let all = |quad| sets.searched(quad, |_| true);
-                    set_program.bound_all(sets, (0..sets.quads()).map(all), &mut bounds, |quad, bounds| {
+                    let quads = (0..sets.quads()).map(|quad| sets.searched_quad(quad));
+                    set_program.bound_all(sets, quads, &mut bounds, |quad, bounds| {
                         for (place, block) in quad.blocks() {
                             found[block] = bounds.greatest(place);
                         }
                     });
                     for (block, &greatest) in found.iter().enumerate() {
-                        let (quad, place) = sets.place_of(block);
-                        let quad = sets.searched(quad, |other| other == block);
+                        let (quad, place) = sets.alone(block);
                         let alone = set_program.bound((sets, &quad), None, &mut bounds);
                         prop_assert_eq!(alone.greatest(place), greatest);
                         let others = (0..QUAD).filter(|&other| other != place);

@@ -4,6 +4,7 @@
 //! and not with the rectangle of the map.
 
 use crate::grid::{CellSet, WORD};
+use crate::simd::words::QUAD;
 
 /// A set of blocks of a grid, by their places in it, row by row.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -58,4 +59,15 @@ impl BlockIds {
     pub(crate) fn bytes(&self) -> usize {
         self.blocks.bytes() + size_of_val(&self.before[..])
     }
+}
+
+/// Returns the two by two blocks of a quad, or of a block of twice the side, as far as they are
+/// on a map of this many columns and rows of blocks.
+pub(crate) fn quad_of(quad: usize, (columns, rows): (usize, usize)) -> [Option<usize>; QUAD] {
+    let quads = columns.div_ceil(2);
+    let (left, bottom) = (2 * (quad % quads), 2 * (quad / quads));
+    std::array::from_fn(|place| {
+        let (x, y) = (left + place % 2, bottom + place / 2);
+        (x < columns && y < rows).then(|| y * columns + x)
+    })
 }

@@ -12,7 +12,7 @@ mod unpack;
 mod wide;
 
 use super::bins::Bins;
-use super::block_ids::BlockIds;
+use super::block_ids::{BlockIds, quad_of};
 use crate::directions::Directions;
 use crate::grid::{CellSet, Grid};
 use crate::instruction_set::InstructionSet;
@@ -175,6 +175,14 @@ impl RangeIntervals {
         let (nearest, rest) = packed.split_at(self.directions);
         let (farthest, widths) = rest.split_at(self.directions);
         [nearest, farthest, widths]
+    }
+
+    /// Returns the blocks that are kept in a block of twice the side.
+    pub(crate) fn quarters(&self, block: usize) -> impl Iterator<Item = usize> {
+        let quarters = quad_of(block, (self.columns, self.rows)).into_iter();
+        quarters
+            .flatten()
+            .filter(|&quarter| self.ids.holds(quarter))
     }
 
     /// Unpacks the intervals of a block that is kept.

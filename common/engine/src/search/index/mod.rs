@@ -14,7 +14,6 @@ mod needed;
 pub(crate) mod obstacles;
 mod sections;
 pub(crate) mod sets;
-pub(crate) mod within;
 
 pub use key::IndexKey;
 pub use sections::{SECTIONS, SectionError, UncheckedIndex};
@@ -22,11 +21,11 @@ pub use sections::{SECTIONS, SectionError, UncheckedIndex};
 use std::sync::OnceLock;
 
 use bins::Bins;
+use bits::CHUNK;
 use block_ids::BlockIds;
 use intervals::{RangeIntervals, SIDE};
 use obstacles::Obstacles;
 use sets::RangeSets;
-use within::Within;
 
 use crate::grid::Grid;
 use crate::instruction_set::InstructionSet;
@@ -43,7 +42,7 @@ pub struct SearchIndex {
     pub(crate) fine: RangeSets,
     pub(crate) coarse: RangeSets,
     pub(crate) obstacles: Obstacles,
-    pub(crate) within: Within,
+    pub(crate) limits: Limits,
     /// Prepared for counting every pose; made when bounds first do not help.
     sweeps: OnceLock<FieldSweep>,
 }
@@ -73,14 +72,23 @@ impl SearchIndex {
             fine,
             coarse,
             obstacles: Obstacles::new(grid),
-            within: Within::new(limits, grid),
+            limits,
             sweeps: OnceLock::new(),
         }
     }
 
     /// Returns the limits within which poses are searched.
     pub fn limits(&self) -> &Limits {
-        &self.within.limits
+        &self.limits
+    }
+
+    /// Returns a bit for each heading below `count` that is searched, a word for each chunk.
+    pub(crate) fn headings(&self, count: usize) -> impl Iterator<Item = u128> {
+        (0..count).step_by(CHUNK).map(move |first| {
+            let headings = first..count.min(first + CHUNK);
+            let searched = headings.filter(|&heading| self.limits.hold_heading(heading));
+            searched.fold(0, |word, heading| word | 1 << (heading - first))
+        })
     }
 
     /// Number of blocks of 8 × 8 cells in which poses are searched, by their quarters.
@@ -97,6 +105,6 @@ impl SearchIndex {
     pub fn bytes(&self) -> usize {
         let blocks = self.intervals.bytes() + self.fine.bytes() + self.coarse.bytes();
         let sweeps = self.sweeps.get().map_or(0, FieldSweep::bytes);
-        blocks + self.within.bytes() + self.obstacles.bytes() + sweeps
+        blocks + self.limits.bytes() + self.obstacles.bytes() + sweeps
     }
 }

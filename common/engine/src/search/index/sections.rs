@@ -12,7 +12,6 @@ use super::bins::Bins;
 use super::intervals::RangeIntervals;
 use super::obstacles::Obstacles;
 use super::sets::RangeSets;
-use super::within::Within;
 use crate::grid::{CellSet, Grid};
 use crate::limits::Limits;
 use crate::space::Space;
@@ -73,15 +72,11 @@ impl SearchIndex {
 
     /// Returns the bytes of all sections, in their order.
     pub fn sections(&self) -> [&[u8]; SECTIONS] {
-        let [cells, headings] = self
-            .within
-            .limits
-            .sets()
-            .map(|set| set.map_or(&[][..], words));
-        let [fine_blocks, coarse_blocks] = self.within.blocks.each_ref().map(words);
+        let sets = self.limits.sets();
+        let [cells, headings] = sets.map(|set| set.map_or(&[][..], words));
         let (small_blocks, packed) = self.intervals.parts();
-        let [a, b, c] = self.fine.parts();
-        let [d, e, f] = self.coarse.parts();
+        let [fine_blocks, a, b, c] = self.fine.parts();
+        let [coarse_blocks, d, e, f] = self.coarse.parts();
         let ([along_x, along_y], clearance) = self.obstacles.parts();
         [
             cells,
@@ -121,7 +116,6 @@ impl UncheckedIndex {
             |first: usize| Ok([length(first)?, length(first + 1)?, length(first + 2)?]);
         let directions = &space.directions;
         let by = [lengths[0] > 0, lengths[1] > 0];
-        let limits = Limits::unfilled(grid, directions, by);
         let intervals = RangeIntervals::unfilled(grid, directions, length(5)?);
         let sets = |side, first| {
             let sets = RangeSets::unfilled(side, grid, directions, lengths_from(first)?);
@@ -133,7 +127,7 @@ impl UncheckedIndex {
             fine: sets(8, 6)?,
             coarse: sets(16, 9)?,
             obstacles: Obstacles::unfilled(grid),
-            within: Within::unfilled(limits, grid),
+            limits: Limits::unfilled(grid, directions, by),
             sweeps: Default::default(),
         });
         let sections = unchecked.sections_mut();
@@ -154,16 +148,14 @@ impl UncheckedIndex {
             fine,
             coarse,
             obstacles,
-            within: Within { limits, blocks },
+            limits,
             ..
         } = &mut self.0;
-        let [cells, headings] = limits
-            .sets_mut()
-            .map(|set| set.map_or(&mut [][..], words_mut));
-        let [fine_blocks, coarse_blocks] = blocks.each_mut().map(words_mut);
+        let sets = limits.sets_mut();
+        let [cells, headings] = sets.map(|set| set.map_or(&mut [][..], words_mut));
         let (small_blocks, packed) = intervals.parts_mut();
-        let [a, b, c] = fine.parts_mut();
-        let [d, e, f] = coarse.parts_mut();
+        let [fine_blocks, a, b, c] = fine.parts_mut();
+        let [coarse_blocks, d, e, f] = coarse.parts_mut();
         let ([along_x, along_y], clearance) = obstacles.parts_mut();
         [
             cells,
@@ -260,7 +252,7 @@ mod tests {
             let config = CollectConfig { candidates, floor_share: 0.6, ..CollectConfig::default() };
             for set in InstructionSet::available() {
                 let [back, made] = [&back, &made].map(|index| {
-                    index.search_with((set, 1), &grid, (&program, &space), config, &|| false)
+                    index.search((set, 1), &grid, (&program, &space), config)
                 });
                 prop_assert_eq!(back, made);
             }
@@ -285,8 +277,7 @@ mod tests {
             let Ok(back) = back else { return Ok(()) };
             let program = scan.program(&space);
             for set in InstructionSet::available() {
-                let found = back.search_with((set, 1), &grid, (&program, &space), CollectConfig::default(), &|| false);
-                prop_assert!(found.is_some(), "it comes to an end");
+                let _ = back.search((set, 1), &grid, (&program, &space), CollectConfig::default());
             }
         }
 

@@ -15,9 +15,10 @@ mod packed;
 
 use std::ops::Range;
 
+use super::block_ids::quad_of;
 use super::intervals::{self, RangeIntervals, WideViews};
 use crate::directions::Directions;
-use crate::grid::Grid;
+use crate::grid::{CellSet, Grid};
 use crate::simd::words::{BYTES, QUAD};
 pub(crate) use packed::SetRows;
 use packed::{PackedRows, words};
@@ -37,6 +38,8 @@ pub(crate) struct RangeSets {
     pub columns: usize,
     /// Blocks along y.
     pub rows: usize,
+    /// Blocks in which poses are searched.
+    pub searched: CellSet,
     /// Bytes of a row of bits: one bit for each direction. A row stands for
     /// `1 << ROW_SHIFT` bins.
     stride: usize,
@@ -49,7 +52,7 @@ pub(crate) struct RangeSets {
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Quad {
     pub index: usize,
-    /// Blocks that are on the map and wanted.
+    /// Blocks that are on the map and bounded.
     pub blocks: [Option<usize>; QUAD],
 }
 
@@ -69,7 +72,8 @@ impl RangeSets {
     pub(crate) fn new(intervals: &RangeIntervals, wide: &WideViews) -> Self {
         let (columns, rows) = (intervals.columns.div_ceil(2), intervals.rows.div_ceil(2));
         let (side, stride) = (2 * intervals::SIDE, intervals.directions / 8);
-        let sets = Self::without_quads(side, (columns, rows), stride);
+        let mut sets = Self::without_quads(side, (columns, rows), stride);
+        sets.search_in(&intervals.ids.blocks, intervals.columns);
         intervals.simd.run(build::Joining(intervals, wide, sets))
     }
 
@@ -78,9 +82,18 @@ impl RangeSets {
             side,
             columns,
             rows,
+            searched: CellSet::none(columns * rows),
             stride,
             starts: Vec::with_capacity(columns.div_ceil(2) * rows.div_ceil(2) + 1),
             packed: PackedRows::default(),
+        }
+    }
+
+    /// Searches the blocks of which any quarter is one of these.
+    fn search_in(&mut self, quarters: &CellSet, columns: usize) {
+        for quarter in quarters.iter() {
+            let (x, y) = (quarter % columns, quarter / columns);
+            self.searched.insert(y / 2 * self.columns + x / 2);
         }
     }
 
@@ -133,6 +146,7 @@ impl RangeSets {
             side,
             columns,
             rows,
+            searched: CellSet::none(columns * rows),
             stride,
             starts: vec![Start::default(); quads + 1],
             packed: PackedRows {
@@ -142,19 +156,26 @@ impl RangeSets {
         })
     }
 
-    /// Returns the starts of quads, the masks, and the bytes that are kept.
-    pub(crate) fn parts(&self) -> [&[u8]; 3] {
+    /// Returns the set of the blocks, the starts of quads, the masks, and the bytes that are kept.
+    pub(crate) fn parts(&self) -> [&[u8]; 4] {
         let PackedRows { masks, bytes } = &self.packed;
+        let searched = bytemuck::cast_slice(self.searched.words());
         let starts = bytemuck::cast_slice(&self.starts);
-        [starts, bytemuck::cast_slice(masks), bytes.as_flattened()]
+        [
+            searched,
+            starts,
+            bytemuck::cast_slice(masks),
+            bytes.as_flattened(),
+        ]
     }
 
     /// Returns the same, to be filled in.
-    pub(crate) fn parts_mut(&mut self) -> [&mut [u8]; 3] {
+    pub(crate) fn parts_mut(&mut self) -> [&mut [u8]; 4] {
         let PackedRows { masks, bytes } = &mut self.packed;
+        let searched = bytemuck::cast_slice_mut(self.searched.words_mut());
         let starts = bytemuck::cast_slice_mut(&mut self.starts);
         let masks = bytemuck::cast_slice_mut(masks);
-        [starts, masks, bytes.as_flattened_mut()]
+        [searched, starts, masks, bytes.as_flattened_mut()]
     }
 
     /// True if the sections that were filled in can be read: the quads follow each other, no
@@ -185,6 +206,7 @@ impl RangeSets {
         let (columns, rows) = (self.columns.div_ceil(2), self.rows.div_ceil(2));
         let quads = (columns.div_ceil(2), rows.div_ceil(2));
         let mut joined = Self::without_quads(2 * self.side, (columns, rows), self.stride);
+        joined.search_in(&self.searched, self.columns);
         let mut turn = vec![[0; QUAD]; self.stride];
         let mut unpacked = [(); QUAD].map(|()| Vec::new());
         for quad in 0..quads.0 * quads.1 {
@@ -221,25 +243,26 @@ impl RangeSets {
         self.starts.len() - 1
     }
 
-    /// Returns a quad with those of its blocks that are wanted.
-    pub(crate) fn searched(&self, quad: usize, wanted: impl Fn(usize) -> bool) -> Quad {
-        let blocks = quad_of(quad, (self.columns, self.rows));
-        Quad {
-            index: quad,
-            blocks: blocks.map(|block| block.filter(|&block| wanted(block))),
-        }
+    /// Returns a quad with those of its blocks in which poses are searched.
+    pub(crate) fn searched_quad(&self, index: usize) -> Quad {
+        let blocks = quad_of(index, (self.columns, self.rows));
+        let blocks = blocks.map(|block| block.filter(|&block| self.searched.holds(block)));
+        Quad { index, blocks }
     }
 
-    /// Returns the quad of a block, and the block's place in it.
-    pub(crate) fn place_of(&self, block: usize) -> (usize, usize) {
+    /// Returns the quad of a block with that block alone, and the block's place in it.
+    pub(crate) fn alone(&self, block: usize) -> (Quad, usize) {
         let (x, y) = (block % self.columns, block / self.columns);
-        let quad = y / 2 * self.columns.div_ceil(2) + x / 2;
-        (quad, y % 2 * 2 + x % 2)
+        let index = y / 2 * self.columns.div_ceil(2) + x / 2;
+        let place = y % 2 * 2 + x % 2;
+        let mut blocks = [None; QUAD];
+        blocks[place] = Some(block);
+        (Quad { index, blocks }, place)
     }
 
     /// Size in bytes.
     pub(crate) fn bytes(&self) -> usize {
-        self.packed.size() + size_of_val(&self.starts[..])
+        self.searched.bytes() + self.packed.size() + size_of_val(&self.starts[..])
     }
 
     pub(crate) fn quad(&self, quad: usize) -> SetRows<'_> {
@@ -256,7 +279,7 @@ impl RangeSets {
 }
 
 impl Quad {
-    /// Returns the wanted blocks, each after its place in the quad.
+    /// Returns the blocks, each after its place in the quad.
     pub(crate) fn blocks(&self) -> impl Iterator<Item = (usize, usize)> + use<> {
         let blocks = self.blocks.into_iter().enumerate();
         blocks.filter_map(|(place, block)| Some((place, block?)))
@@ -267,16 +290,6 @@ impl Quad {
 fn count<T>(bytes: usize) -> Option<usize> {
     let each = size_of::<T>();
     bytes.is_multiple_of(each).then_some(bytes / each)
-}
-
-/// Returns the blocks of a quad on a map of this many columns and rows of blocks.
-fn quad_of(quad: usize, (columns, rows): (usize, usize)) -> [Option<usize>; QUAD] {
-    let quads = columns.div_ceil(2);
-    let (left, bottom) = (2 * (quad % quads), 2 * (quad / quads));
-    std::array::from_fn(|place| {
-        let (x, y) = (left + place % 2, bottom + place / 2);
-        (x < columns && y < rows).then(|| y * columns + x)
-    })
 }
 
 #[cfg(test)]
@@ -316,8 +329,8 @@ mod tests {
             }
             for sets in [&fine, &fine.joined()] {
                 for (y, x) in (0..grid.height()).flat_map(|y| (0..grid.width()).map(move |x| (y, x))) {
-                    let (quad, place) = sets.place_of(y / sets.side * sets.columns + x / sets.side);
-                    let rows = sets.quad(quad);
+                    let (quad, place) = sets.alone(y / sets.side * sets.columns + x / sets.side);
+                    let rows = sets.quad(quad.index);
                     for (d, direction) in directions.all().iter().enumerate() {
                         let range = reference::range(&grid, x as i64, y as i64, direction);
                         let Some(range) = range.filter(|&range| range > 0) else { continue };

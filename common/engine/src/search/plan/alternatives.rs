@@ -15,7 +15,6 @@ use crate::search::bounds::set_bounds::SetBounds;
 use crate::search::index::bits;
 use crate::search::index::intervals::{BlockIntervals, SIDE};
 use crate::search::index::sets::Quad;
-use crate::search::index::within::{Size, quarters};
 use crate::search::leaves::block_ranges::BlockRanges;
 use crate::search::task::Task;
 use crate::votes::Distinct;
@@ -31,7 +30,7 @@ const MIN_BOUND_RATIO: u32 = 31;
 /// scan to scan.
 #[derive(Debug, Default)]
 pub(crate) struct Scratch {
-    bounds: SetBounds,
+    pub bounds: SetBounds,
     intervals: BlockIntervals,
     interval_bounds: IntervalBounds,
     block_ranges: BlockRanges,
@@ -59,7 +58,7 @@ impl Scratch {
     /// Leaves poses of the `wanted` blocks with the highest bounds in the buffer, in no order.
     /// Blocks whose bounds are below `least` are not searched.
     pub(crate) fn find(&mut self, task: &Task<'_>, wanted: usize, least: u16) {
-        self.bounds.fit(&task.programs.sets, task.headings());
+        self.bounds.fit(&task.shared.sets, task.headings());
         self.block_ranges.prepare(task.grid, &task.space.directions);
         let Scratch {
             bounds,
@@ -67,12 +66,11 @@ impl Scratch {
             fine,
             ..
         } = self;
-        let within = &task.index.within;
-        let bounded = task.coarse_bounds.iter().enumerate();
-        let searched = bounded.filter(|&(block, _)| within.holds(Size::Coarse, block));
+        let bound = |block: usize| task.shared.coarse_bounds[block].load(Ordering::Relaxed);
+        let blocks = 0..task.index.coarse.blocks();
+        let searched = blocks.filter(|&block| task.index.coarse.searched.holds(block));
         coarse.clear();
-        coarse
-            .extend(searched.map(|(block, bound)| (bound.load(Ordering::Relaxed), Reverse(block))));
+        coarse.extend(searched.map(|block| (bound(block), Reverse(block))));
         keep_greatest(coarse, COARSE_SHARE * wanted);
         fine.clear();
         let mut least = least;
@@ -81,7 +79,7 @@ impl Scratch {
                 if bound < least {
                     break;
                 }
-                let quad = within.quad(Size::Fine, &task.index.fine, block);
+                let quad = task.index.fine.searched_quad(block);
                 let found = bound_fine(task, &quad, least, bounds);
                 let bounded = quad
                     .blocks()
@@ -120,15 +118,12 @@ impl Scratch {
             interval_bounds,
             ..
         } = self;
-        let (quad, place) = index.fine.place_of(block);
-        let quad = index.fine.searched(quad, |other| other == block);
+        let (quad, place) = index.fine.alone(block);
         let least = (u32::from(bound) * MIN_BOUND_RATIO / 32) as u16;
         let bounds = bound_fine(task, &quad, least.max(1), bounds);
-        let program = &task.programs.interval;
-        let sides = (index.intervals.columns, index.intervals.rows);
-        let smalls = quarters(block, index.fine.columns, sides);
+        let program = &task.shared.interval;
         let mut best: Option<Spot> = None;
-        for small in smalls.filter(|&block| index.intervals.ids.holds(block)) {
+        for small in index.intervals.quarters(block) {
             index.intervals.read(small, intervals);
             for (first, among) in bounds.reach(place) {
                 let least = best.map_or(1, |spot| spot.bound);
@@ -151,11 +146,9 @@ impl Scratch {
         let (Reverse(block), Reverse(heading)) = (spot.block, spot.heading);
         let view = task.view();
         let block_ranges = &mut self.block_ranges;
-        block_ranges.enter((&view, &index.within.limits), &index.intervals, block);
-        let counts = task
-            .programs
-            .leaf
-            .count(task.program, block_ranges, &view, heading);
+        block_ranges.enter((&view, &index.limits), &index.intervals, block);
+        let program = &task.shared.leaf;
+        let counts = program.count(task.program, block_ranges, &view, heading);
         let votes = counts
             .iter()
             .zip(&block_ranges.open)
@@ -181,7 +174,7 @@ fn bound_fine<'a>(
     // A coarse block has the index of the quad of 8 × 8 blocks within.
     let known = (task.by_chunk(quad.index), least);
     let blocks = (&task.index.fine, quad);
-    task.programs.sets.bound(blocks, Some(known), bounds)
+    task.shared.sets.bound(blocks, Some(known), bounds)
 }
 
 impl Spot {

@@ -4,7 +4,6 @@ use super::Workspace;
 use crate::instruction_set::InstructionSet;
 use crate::program::ScanProgram;
 use crate::search::index::SearchIndex;
-use crate::search::index::within::Size;
 use crate::simd::Simd;
 use crate::space::Space;
 
@@ -38,14 +37,15 @@ impl SearchIndex {
     ) {
         let (coarse, directions) = (&self.coarse, &space.directions);
         let best = Simd::new(InstructionSet::best());
-        let (set_program, bounds) = &mut workspace.bounding;
+        let set_program = &mut workspace.shared.sets;
+        let bounds = &mut workspace.alternatives.bounds;
         set_program.make(program, directions, &self.bins, best);
-        bounds.fit(set_program, self.within.headings(directions.count()));
+        bounds.fit(set_program, self.headings(directions.count()));
         blocks.side = coarse.side;
         blocks.columns = coarse.columns;
         blocks.bounds.clear();
         blocks.bounds.resize(coarse.blocks(), 0);
-        let quads = (0..coarse.quads()).map(|quad| self.within.quad(Size::Coarse, coarse, quad));
+        let quads = (0..coarse.quads()).map(|quad| coarse.searched_quad(quad));
         set_program.bound_all(coarse, quads, bounds, |quad, found| {
             for (place, block) in quad.blocks() {
                 blocks.bounds[block] = found.greatest(place);

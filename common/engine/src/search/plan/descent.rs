@@ -12,7 +12,6 @@ use crate::search::bounds::set_bounds::SetBounds;
 use crate::search::index::SearchIndex;
 use crate::search::index::bits;
 use crate::search::index::intervals::{BlockIntervals, CELLS};
-use crate::search::index::within::{Size, quarters};
 use crate::search::leaves::block_ranges::BlockRanges;
 use crate::search::leaves::leaf::Count;
 use crate::search::task::budget::{Budget, Tally};
@@ -56,8 +55,6 @@ pub(crate) struct Scratch {
     windows: Vec<(usize, u64)>,
     /// Poses that matter.
     pub collector: Collector,
-    /// Number of poses that were counted.
-    pub poses_evaluated: u64,
     /// Most votes of any pose that the search did not reach because it was cut.
     pub left: u16,
     tally: Tally,
@@ -66,14 +63,12 @@ pub(crate) struct Scratch {
 impl Scratch {
     /// Prepares the buffers for a task; drops the contents of the one before.
     fn start(&mut self, task: &Task<'_>) {
-        let programs = task.programs;
-        self.set_bounds.fit(&programs.sets, task.headings());
+        self.set_bounds.fit(&task.shared.sets, task.headings());
         self.block_ranges.prepare(task.grid, &task.space.directions);
         self.counts.resize(HEADINGS, Count::default());
         self.queue.clear();
         self.windows.clear();
         self.collector.start(task.config);
-        self.poses_evaluated = 0;
         self.left = 0;
         self.tally = Tally::default();
     }
@@ -155,12 +150,11 @@ impl<'a> Descent<'a> {
 
     /// Bounds one of `parts` of the coarse quads, and queues them.
     fn bound_coarse(&mut self, part: usize, parts: usize) {
-        let (coarse, program) = (&self.task.index.coarse, &self.task.programs.sets);
+        let (coarse, program) = (&self.task.index.coarse, &self.task.shared.sets);
         // Neighbouring blocks are alike, so parts take them in turn. All bounds are needed, even if
         // another part gives up: candidates come from them.
-        let within = &self.task.index.within;
         let own = (part..coarse.quads()).step_by(parts);
-        let own = own.map(|quad| within.quad(Size::Coarse, coarse, quad));
+        let own = own.map(|quad| coarse.searched_quad(quad));
         let own = own.filter(|quad| quad.blocks().next().is_some());
         let Scratch {
             set_bounds, queue, ..
@@ -168,7 +162,7 @@ impl<'a> Descent<'a> {
         program.bound_all(coarse, own, set_bounds, |quad, found| {
             for (place, block) in quad.blocks() {
                 let bound = found.greatest(place);
-                self.task.coarse_bounds[block].store(bound, Ordering::Relaxed);
+                self.task.shared.coarse_bounds[block].store(bound, Ordering::Relaxed);
                 for (known, bound) in self.task.by_chunk(block).iter().zip(found.by_chunk(place)) {
                     known.store(bound, Ordering::Relaxed);
                 }
@@ -203,9 +197,9 @@ impl<'a> Descent<'a> {
 
     /// Bounds and queues the blocks of 8 × 8 cells in one of 16 × 16.
     fn split_coarse(&mut self, index: usize) {
-        let SearchIndex { fine, within, .. } = self.task.index;
-        let program = &self.task.programs.sets;
-        let quad = within.quad(Size::Fine, fine, index);
+        let fine = &self.task.index.fine;
+        let program = &self.task.shared.sets;
+        let quad = fine.searched_quad(index);
         let known = (self.task.by_chunk(index), self.scratch.collector.floor());
         program.bound((fine, &quad), Some(known), &mut self.scratch.set_bounds);
         for (place, block) in quad.blocks() {
@@ -232,10 +226,9 @@ impl<'a> Descent<'a> {
 
     /// Queues the blocks of 4 × 4 cells in one of 8 × 8, at the headings at which they may matter.
     fn split_fine(&mut self, index: usize, windows: &Range<usize>) {
-        let (fine, whole) = (&self.task.index.fine, &self.task.index.intervals);
-        let quarters = quarters(index, fine.columns, (whole.columns, whole.rows));
-        let program = &self.task.programs.interval;
-        for block in quarters.filter(|&block| whole.ids.holds(block)) {
+        let whole = &self.task.index.intervals;
+        let program = &self.task.shared.interval;
+        for block in whole.quarters(index) {
             whole.read(block, &mut self.scratch.intervals);
             for window in windows.clone() {
                 let Scratch {
@@ -260,7 +253,7 @@ impl<'a> Descent<'a> {
     /// Counts the votes of a block's poses at the headings that bits select from a first one on.
     fn count(&mut self, index: usize, first: usize, among: u64) {
         let SearchIndex {
-            intervals, within, ..
+            intervals, limits, ..
         } = self.task.index;
         let Scratch {
             block_ranges,
@@ -269,8 +262,8 @@ impl<'a> Descent<'a> {
             tally,
             ..
         } = &mut *self.scratch;
-        block_ranges.enter((&self.task.view(), &within.limits), intervals, index);
-        let (program, floor) = (&self.task.programs.interval, collector.floor());
+        block_ranges.enter((&self.task.view(), limits), intervals, index);
+        let (program, floor) = (&self.task.shared.interval, collector.floor());
         tally.windows += 1;
         if program.bound::<true>(&block_ranges.intervals, first, floor, bounds) {
             let (among, _) = bounds.reach(floor, among);
@@ -294,7 +287,7 @@ impl<'a> Descent<'a> {
         for (sector, bounds) in sectors.iter().enumerate() {
             self.scratch.tally.sectors += u64::from(alive.count_ones());
             let rays = (&mut self.scratch.block_ranges, &view);
-            let program = &self.task.programs.leaf;
+            let program = &self.task.shared.leaf;
             let beams = (sector, &voting[..]);
             let scan = self.task.program;
             program.add(scan, rays, beams, (first, alive), &mut self.scratch.counts);
@@ -318,7 +311,7 @@ impl<'a> Descent<'a> {
 
     fn take(&mut self, heading: u16, counts: &[u16; CELLS]) {
         let open = self.scratch.block_ranges.open;
-        self.scratch.poses_evaluated += CELLS as u64;
+        self.scratch.collector.evaluated += CELLS as u64;
         for (i, &intensity) in counts.iter().enumerate() {
             if open[i] != 0 {
                 let (x, y) = self.scratch.block_ranges.cell(i);

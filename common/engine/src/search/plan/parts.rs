@@ -6,7 +6,7 @@
 use super::descent::{Descent, Scratch};
 use crate::search::task::{End, Task};
 use crate::threads;
-use crate::votes::VoteSet;
+use crate::votes::{Collector, VoteSet};
 
 /// Runs a search on as many threads as there are scratch buffers, the calling one included.
 pub(crate) fn run(task: &Task<'_>, scratches: &mut [Scratch], stop: &dyn Fn() -> bool) -> End {
@@ -84,14 +84,9 @@ pub(crate) fn run_all<'a>(
 
 /// Merges the results of all threads.
 pub(crate) fn finish(scratches: &mut [Scratch], found: &mut VoteSet) {
-    let (own, others) = scratches.split_first_mut().expect("a thread");
-    for other in others {
-        own.collector.merge(&other.collector);
-        own.poses_evaluated += other.poses_evaluated;
-        own.left = own.left.max(other.left);
-    }
-    own.collector.finish(own.poses_evaluated, found);
-    found.cut_at(own.left);
+    let left = scratches.iter().map(|scratch| scratch.left).max();
+    Collector::finish_all(scratches.iter_mut().map(|own| &mut own.collector), found);
+    found.cut_at(left.unwrap_or(0));
 }
 
 /// Searches of two threads in every order that `loom` can tell apart.

@@ -5,8 +5,6 @@ use super::{alternatives, descent};
 use crate::grid::Grid;
 use crate::instruction_set::InstructionSet;
 use crate::program::ScanProgram;
-use crate::search::bounds::set_bounds::SetBounds;
-use crate::search::bounds::set_program::SetProgram;
 use crate::search::counting;
 use crate::search::index::SearchIndex;
 use crate::search::task::lead::Lead;
@@ -19,55 +17,34 @@ use crate::votes::{CollectConfig, VoteSet};
 /// allocated any more. They may serve any map.
 #[derive(Debug, Default)]
 pub struct Workspace {
-    shared: Shared,
+    pub(super) shared: Shared,
     /// One for each thread.
     scratches: Vec<descent::Scratch>,
-    alternatives: alternatives::Scratch,
+    pub(super) alternatives: alternatives::Scratch,
     /// Buffers for counting every pose, one for each thread.
     shares: Vec<counting::Share>,
-    /// Program and buffers for bounding blocks.
-    pub(super) bounding: (SetProgram, SetBounds),
 }
 
 impl SearchIndex {
-    /// Returns the poses with the most votes; `None` if `stop` returned true before the end.
-    #[must_use]
-    pub fn search(
+    /// Returns the poses with the most votes, with an instruction set on a number of threads.
+    #[cfg(test)]
+    pub(crate) fn search(
         &self,
-        grid: &Grid,
-        program: &ScanProgram,
-        space: &Space,
-        config: CollectConfig,
-        stop: &dyn Fn() -> bool,
-    ) -> Option<VoteSet> {
-        let best = InstructionSet::best();
-        self.search_with((best, 1), grid, (program, space), config, stop)
-    }
-
-    /// Does the same with a given instruction set on a number of threads, see
-    /// [`SearchIndex::search_in`].
-    ///
-    /// # Panics
-    /// If the processor does not have the instruction set, or there is no
-    /// thread.
-    #[must_use]
-    pub fn search_with(
-        &self,
-        (instruction_set, threads): (InstructionSet, usize),
+        how: (InstructionSet, usize),
         grid: &Grid,
         scan: (&ScanProgram, &Space),
         config: CollectConfig,
-        stop: &dyn Fn() -> bool,
-    ) -> Option<VoteSet> {
+    ) -> VoteSet {
         let (mut workspace, mut found) = (Workspace::default(), VoteSet::default());
-        let how = (instruction_set, threads);
         let collect = (config, &mut found);
-        self.search_in(&mut workspace, how, grid, scan, collect, stop)?;
-        Some(found)
+        let end = self.search_in(&mut workspace, how, grid, scan, collect, &|| false);
+        end.expect("it comes to an end");
+        found
     }
 
-    /// Fills in the poses with the most votes, in a workspace that may have served other scans
-    /// and maps; `None` if `stop` returned true before the end.
+    /// Fills in the poses with the most votes, with an instruction set on a number of threads, in a
+    /// workspace that may have served other scans and maps; `None` if `stop` returned true before
+    /// the end.
     ///
     /// The outcome is the same with any instruction set and number of threads, except for the
     /// number of poses that were counted. If bounds cannot distinguish blocks, all poses are
@@ -136,7 +113,6 @@ mod tests {
         scan_from, space_of,
     };
     use crate::votes::{is_close, most_candidates};
-    use messages::Vote;
 
     fn check(
         grid: &Grid,
@@ -148,10 +124,9 @@ mod tests {
         for instruction_set in InstructionSet::available() {
             for threads in 1..4 {
                 let how = (instruction_set, threads);
-                let found = index.search_with(how, grid, (program, space), config, &|| false);
                 let found = VoteSet {
                     poses_evaluated: 0,
-                    ..found.unwrap()
+                    ..index.search(how, grid, (program, space), config)
                 };
                 prop_assert_eq!(&found, &plain, "{:?}", how);
             }
@@ -160,48 +135,16 @@ mod tests {
     }
 
     proptest! {
+        /// Headings of a part of a chunk, of several chunks, and of a chunk and a part.
         #[test]
         fn the_search_equals_the_reference_however_it_is_done(
-            grid in any_grid(), scan in any_scan(), headings in 1u32..8,
-            floor_share in 0.5..=1.0f64, max_votes in 1u32..400,
+            grid in any_grid(), scan in any_scan(),
+            headings in prop_oneof![(1u32..8).prop_map(|eights| 8 * eights), Just(360), Just(128), Just(488)],
+            floor_share in 0.5..=1.0f64, max_votes in prop_oneof![1u32..400, Just(65_536)],
         ) {
-            let space = space_of(&grid, headings * 8);
+            let space = space_of(&grid, headings);
             let config = CollectConfig { floor_share, max_votes, ..CollectConfig::exact() };
             check(&grid, (&scan.program(&space), &space), config)?;
-        }
-
-        /// Headings of several chunks, and of a chunk and a part.
-        #[test]
-        fn the_search_equals_the_reference_at_all_headings_of_a_turn(
-            grid in any_grid(), scan in any_scan(),
-            headings in prop_oneof![Just(360), Just(128), Just(488)], floor_share in 0.5..=1.0f64,
-        ) {
-            let space = space_of(&grid, headings);
-            let config = CollectConfig { floor_share, ..CollectConfig::exact() };
-            check(&grid, (&scan.program(&space), &space), config)?;
-        }
-
-        #[test]
-        fn poses_beyond_the_limits_are_not_found(
-            (grid, limits, headings) in any_limited_grid(8), scan in any_scan(),
-            floor_share in 0.3..=1.0f64, threads in 1usize..3, candidates in 0u32..9,
-        ) {
-            let space = space_of(&grid, headings);
-            let program = scan.program(&space);
-            let config = CollectConfig { floor_share, ..CollectConfig::default() };
-            let plain = plain_votes_within(&limits, &grid, &program, &space, config);
-            let index = SearchIndex::within(&grid, &space, limits.clone());
-            let scan = (&program, &space);
-            let config = CollectConfig { candidates, ..config };
-            for instruction_set in InstructionSet::available() {
-                let how = (instruction_set, threads);
-                let found = index.search_with(how, &grid, scan, config, &|| false).unwrap();
-                let (above, below) = found.votes.split_at(plain.votes.len());
-                prop_assert_eq!(above, &plain.votes);
-                let is_held = |vote: &Vote| limits.hold_cell(vote.x.into(), vote.y.into())
-                    && limits.hold_heading(vote.heading.into());
-                prop_assert!(below.iter().all(is_held));
-            }
         }
 
         #[test]
@@ -215,19 +158,19 @@ mod tests {
 
         #[test]
         fn candidates_are_poses_below_the_floor_and_the_same_however_it_is_done(
-            grid in any_grid(), scan in any_scan(), headings in 1u32..8, candidates in 1u32..20,
+            (grid, limits, headings) in any_limited_grid(8), scan in any_scan(),
+            floor_share in prop_oneof![0.3..=1.0f64, Just(1.0)], candidates in 0u32..20,
         ) {
-            let space = space_of(&grid, headings * 8);
+            let space = space_of(&grid, headings);
             let program = scan.program(&space);
-            let certain = CollectConfig { candidates: 0, ..CollectConfig::default() };
-            let config = CollectConfig { candidates, ..certain };
-            let index = SearchIndex::new(&grid, &space);
-            let plain = plain_votes(&grid, &program, &space, certain);
+            let config = CollectConfig { floor_share, candidates, ..CollectConfig::default() };
+            let index = SearchIndex::within(&grid, &space, limits.clone());
+            let plain = plain_votes_within(&limits, &grid, &program, &space, config);
             let mut first = None;
             for instruction_set in InstructionSet::available() {
                 for threads in 1..3 {
                     let how = (instruction_set, threads);
-                    let found = index.search_with(how, &grid, (&program, &space), config, &|| false).unwrap();
+                    let found = index.search(how, &grid, (&program, &space), config);
                     let found = VoteSet { poses_evaluated: 0, ..found };
                     let (above, below) = found.votes.split_at(plain.votes.len());
                     prop_assert_eq!(above, &plain.votes);
@@ -236,8 +179,10 @@ mod tests {
                     let mut beyond = below.iter().skip(wanted);
                     prop_assert!(beyond.all(|vote| is_close(vote.intensity, found.best)));
                     for vote in below {
-                        let (x, y) = (i64::from(vote.x), i64::from(vote.y));
-                        let intensity = reference::intensity(&grid, &program, &space, x, y, vote.heading.into());
+                        let (x, y, heading) = (vote.x.into(), vote.y.into(), vote.heading.into());
+                        prop_assert!(limits.hold_cell(x, y) && limits.hold_heading(heading));
+                        let (x, y) = (x as i64, y as i64);
+                        let intensity = reference::intensity(&grid, &program, &space, x, y, heading);
                         prop_assert_eq!(vote.intensity, intensity);
                         prop_assert!(grid.is_open(x, y) && intensity < found.certified_floor && intensity > 0);
                     }
@@ -261,8 +206,7 @@ mod tests {
             for instruction_set in InstructionSet::available() {
                 for threads in 1..4 {
                     let how = (instruction_set, threads);
-                    let found = index.search_with(how, &grid, (&program, &space), config, &|| false);
-                    let found = found.unwrap();
+                    let found = index.search(how, &grid, (&program, &space), config);
                     if threads == 1 {
                         prop_assert_eq!(first.get_or_insert(found.clone()), &found);
                     }
@@ -293,7 +237,7 @@ mod tests {
             let index = SearchIndex::new(&grid, &space);
             let [none, zero, large] = [None, Some(0.0), Some(1e9)].map(|work_limit| {
                 let config = CollectConfig { work_limit, candidates, ..CollectConfig::default() };
-                index.search(&grid, &program, &space, config, &|| false).unwrap()
+                index.search((InstructionSet::best(), 1), &grid, (&program, &space), config)
             });
             prop_assert!(!none.cut);
             prop_assert_eq!(&none, &zero);
@@ -308,8 +252,12 @@ mod tests {
         let scan = scan_from(0.0, 1.0, &[0.1, 0.1]);
         let program = ScanProgram::new(&scan, 0.0, &space, &Default::default()).unwrap();
         let index = SearchIndex::new(&grid, &space);
-        let search =
-            |stop| index.search(&grid, &program, &space, CollectConfig::default(), &|| stop);
+        let search = |stop| {
+            let (mut workspace, mut found) = (Workspace::default(), VoteSet::default());
+            let (how, scan) = ((InstructionSet::best(), 1), (&program, &space));
+            let collect = (CollectConfig::default(), &mut found);
+            index.search_in(&mut workspace, how, &grid, scan, collect, &|| stop)
+        };
         assert!(search(true).is_none());
         assert!(search(false).is_some());
     }

@@ -27,11 +27,7 @@ pub(crate) struct Task<'a> {
     pub program: &'a ScanProgram,
     pub space: &'a Space,
     pub config: CollectConfig,
-    pub programs: &'a Programs,
-    /// Bound of each coarse block in which poses are searched.
-    pub coarse_bounds: &'a [AtomicU16],
-    /// Bound of each coarse block in each chunk of headings.
-    by_chunk: &'a [AtomicU16],
+    pub shared: &'a Shared,
     /// Best pose so far, found by any thread on any map.
     lead: &'a Lead,
     /// Votes of a pose with which every beam agrees fully.
@@ -52,32 +48,18 @@ pub(crate) enum End {
     Hopeless,
 }
 
-/// Data that the threads of a search share, kept from scan to scan.
+/// A scan program laid out for each way in which blocks are bounded and counted, and the bounds of
+/// coarse blocks; kept from scan to scan.
 #[derive(Debug, Default)]
 pub(crate) struct Shared {
-    pub programs: Programs,
-    coarse_bounds: Vec<AtomicU16>,
-    by_chunk: Vec<AtomicU16>,
-}
-
-/// A scan program laid out for each way in which blocks are bounded and counted.
-#[derive(Debug, Default)]
-pub(crate) struct Programs {
     pub sets: SetProgram,
     pub interval: IntervalProgram,
     pub leaf: LeafProgram,
     pub simd: Simd,
-}
-
-impl Programs {
-    fn make(&mut self, simd: Simd, index: &SearchIndex, program: &ScanProgram, space: &Space) {
-        let (directions, bins) = (&space.directions, &index.bins);
-        self.sets.make(program, directions, bins, simd);
-        self.leaf.make(program, directions, simd);
-        let ordered = (program, self.leaf.order());
-        self.interval.make(ordered, directions, bins, simd);
-        self.simd = simd;
-    }
+    /// Bound of each coarse block in which poses are searched.
+    pub coarse_bounds: Vec<AtomicU16>,
+    /// Bound of each coarse block in each chunk of headings.
+    by_chunk: Vec<AtomicU16>,
 }
 
 impl<'a> Task<'a> {
@@ -89,8 +71,13 @@ impl<'a> Task<'a> {
         (program, space): (&'a ScanProgram, &'a Space),
         (config, lead): (CollectConfig, &'a Lead),
     ) -> Self {
-        shared.programs.make(simd, index, program, space);
-        let chunks = index.within.headings(space.directions.count()).count();
+        let (directions, bins) = (&space.directions, &index.bins);
+        shared.simd = simd;
+        shared.sets.make(program, directions, bins, simd);
+        shared.leaf.make(program, directions, simd);
+        let ordered = (program, shared.leaf.order());
+        shared.interval.make(ordered, directions, bins, simd);
+        let chunks = index.headings(directions.count()).count();
         for (bounds, count) in [
             (&mut shared.coarse_bounds, index.coarse.blocks()),
             (&mut shared.by_chunk, index.coarse.blocks() * chunks),
@@ -104,9 +91,7 @@ impl<'a> Task<'a> {
             program,
             space,
             config,
-            programs: &shared.programs,
-            coarse_bounds: &shared.coarse_bounds,
-            by_chunk: &shared.by_chunk,
+            shared,
             lead,
             possible: program.highest_possible() as u16,
             brute_force: budget::of_brute_force(grid, program, space),
@@ -146,18 +131,23 @@ impl<'a> Task<'a> {
 
     /// Returns the bounds of a coarse block in each chunk of headings.
     pub(crate) fn by_chunk(&self, block: usize) -> &'a [AtomicU16] {
-        let chunks = self.by_chunk.len() / self.coarse_bounds.len();
-        &self.by_chunk[block * chunks..][..chunks]
+        let Shared {
+            coarse_bounds,
+            by_chunk,
+            ..
+        } = self.shared;
+        let chunks = by_chunk.len() / coarse_bounds.len();
+        &by_chunk[block * chunks..][..chunks]
     }
 
     /// Returns the headings that are searched.
     pub(crate) fn searched(&self) -> impl Iterator<Item = usize> + Clone {
-        let limits = &self.index.within.limits;
+        let limits = &self.index.limits;
         (0..self.space.directions.count()).filter(|&heading| limits.hold_heading(heading))
     }
 
     /// Returns a bit for each heading that is searched, a word for each chunk.
     pub(crate) fn headings(&self) -> impl Iterator<Item = u128> {
-        self.index.within.headings(self.space.directions.count())
+        self.index.headings(self.space.directions.count())
     }
 }

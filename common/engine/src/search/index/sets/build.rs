@@ -7,6 +7,7 @@ use super::RangeSets;
 use super::marks::{CHUNK, Chunk};
 use crate::search::index::bins::Bins;
 use crate::search::index::bits;
+use crate::search::index::block_ids::quad_of;
 use crate::search::index::intervals::{ROW_SHIFT, RangeIntervals, WideViews};
 use crate::simd::words::QUAD;
 use crate::simd::{Kernel, Set};
@@ -29,57 +30,51 @@ impl Kernel for Joining<'_> {
         let mut turn = vec![[0; QUAD]; stride];
         // For each block of a quad, a row of words for each row of bits.
         let mut words = [(); QUAD].map(|()| vec![0u64; chunks.len() << (u8::BITS - ROW_SHIFT)]);
-        for y in 0..intervals.rows.div_ceil(4) {
-            for x in 0..intervals.columns.div_ceil(4) {
-                let mut rows = NONE;
-                for (place, words) in words.iter_mut().enumerate() {
-                    let block = (2 * x + place % 2, 2 * y + place / 2);
-                    let marked = mark(set, (intervals, wide), block, &mut chunks, words);
-                    rows = rows.start.min(marked.start)..rows.end.max(marked.end);
-                }
-                if rows.is_empty() {
-                    rows = 0..0;
-                }
-                joined.push(rows.clone(), &mut turn, |row, turn| {
-                    let row = row * chunks.len();
-                    let [a, b, c, d] = words
-                        .each_ref()
-                        .map(|words| &bytemuck::cast_slice(&words[row..])[..stride]);
-                    let bytes = a.iter().zip(b).zip(c).zip(d);
-                    let bytes = bytes.map(|(((&a, &b), &c), &d)| [a, b, c, d]);
-                    turn.iter_mut().zip(bytes).for_each(|(to, byte)| *to = byte);
-                });
-                for words in &mut words {
-                    words[rows.start * chunks.len()..rows.end * chunks.len()].fill(0);
-                }
+        let blocks = (joined.columns, joined.rows);
+        for quad in 0..blocks.0.div_ceil(2) * blocks.1.div_ceil(2) {
+            let mut rows = NONE;
+            for (block, words) in quad_of(quad, blocks).into_iter().zip(&mut words) {
+                let Some(block) = block else { continue };
+                let marked = mark(set, (intervals, wide), block, &mut chunks, words);
+                rows = rows.start.min(marked.start)..rows.end.max(marked.end);
+            }
+            if rows.is_empty() {
+                rows = 0..0;
+            }
+            joined.push(rows.clone(), &mut turn, |row, turn| {
+                let row = row * chunks.len();
+                let [a, b, c, d] = words
+                    .each_ref()
+                    .map(|words| &bytemuck::cast_slice(&words[row..])[..stride]);
+                let bytes = a.iter().zip(b).zip(c).zip(d);
+                let bytes = bytes.map(|(((&a, &b), &c), &d)| [a, b, c, d]);
+                turn.iter_mut().zip(bytes).for_each(|(to, byte)| *to = byte);
+            });
+            for words in &mut words {
+                words[rows.start * chunks.len()..rows.end * chunks.len()].fill(0);
             }
         }
         joined.finished()
     }
 }
 
-/// Marks the distances that the block in column `x` and row `y` sees in `words`, all of
-/// which must be 0. Returns the range of their rows. `chunks` are buffers for the
+/// Marks the distances that a block sees in `words`, all of which must be 0. Returns the range of their rows. `chunks` are buffers for the
 /// directions of a turn.
 #[inline(always)]
 fn mark<S: Set>(
     set: S,
     (intervals, wide): (&RangeIntervals, &WideViews),
-    (x, y): (usize, usize),
+    block: usize,
     chunks: &mut [Chunk],
     words: &mut [u64],
 ) -> Range<usize> {
     let count = chunks.len();
     chunks.fill(Chunk::default());
-    for i in 0..4 {
-        let (x, y) = (2 * x + i % 2, 2 * y + i / 2);
-        if x >= intervals.columns || y >= intervals.rows {
+    let quarters = quad_of(block, (intervals.columns, intervals.rows));
+    for (i, quarter) in quarters.into_iter().enumerate() {
+        let Some(block) = quarter.filter(|&block| intervals.ids.holds(block)) else {
             continue;
-        }
-        let block = y * intervals.columns + x;
-        if !intervals.ids.holds(block) {
-            continue;
-        }
+        };
         for (chunk_index, chunk) in chunks.iter_mut().enumerate() {
             take(chunk, i, intervals, block, CHUNK * chunk_index);
         }
