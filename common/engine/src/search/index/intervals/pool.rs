@@ -39,13 +39,13 @@ pub(super) fn pool<const LINES: usize>(
         }
         let mut steps = [[0; COUNT]; CELLS];
         for (steps, cells) in steps.iter_mut().zip(&cells) {
-            let ranges: &Numbers = cells[start..].first_chunk().expect("whole cache lines");
-            *steps = ranges.map(|range| range.wrapping_sub(1));
+            let ranges = cells[start..].first_chunk().expect("whole cache lines");
+            *steps = each(*ranges, [1; COUNT], u16::wrapping_sub);
         }
         let (first, last) = outermost(&steps);
         let [nearest_bin, farthest_bin] = bin(lines, [first, last]);
-        let nothing = u16::from(Bins::NOTHING);
-        let farthest_bin = farthest_bin.map(|bin| if bin == nothing { 0 } else { bin });
+        let seen = |bin, nothing| if bin == nothing { 0 } else { bin };
+        let farthest_bin = each(farthest_bin, [Bins::NOTHING.into(); COUNT], seen);
         let middle = each(first, last, |first, last| {
             average(first, last.wrapping_add(1))
         });
@@ -55,14 +55,14 @@ pub(super) fn pool<const LINES: usize>(
         let by_quarter = split(lines, ends, part(&steps, quarter));
         let narrower = each(by_middle, by_quarter, u16::min);
         let chunk = start / COUNT;
-        nearest[chunk] = nearest_bin.map(|bin| bin as u8);
-        farthest[chunk] = farthest_bin.map(|bin| bin as u8);
-        widths[chunk] = narrower.map(|widths| widths as u8);
-        let sums = narrower.map(|widths| widths >> u8::BITS).into_iter();
-        let is_wide = sums
-            .enumerate()
-            .map(|(i, sum)| u64::from(sum >= WIDE.into()) << i);
-        let wide = is_wide.fold(0, |all, bit| all | bit) & wanted;
+        nearest[chunk] = lower_bytes(nearest_bin);
+        farthest[chunk] = lower_bytes(farthest_bin);
+        widths[chunk] = lower_bytes(narrower);
+        let mut wide = 0;
+        for (i, widths) in narrower.into_iter().enumerate() {
+            wide |= u64::from(widths >> u8::BITS >= u16::from(WIDE)) << i;
+        }
+        wide &= wanted;
         if wide != 0 {
             noting.note(start, wide, &cells);
         }
@@ -123,19 +123,24 @@ fn part(steps: &[Numbers; CELLS], far: Numbers) -> [Numbers; 2] {
         far_first = each(far_first, beyond, u16::min);
         near_last = each(near_last, beyond, u16::max);
     }
-    [near_last, far_first].map(|steps| each(far, steps, u16::wrapping_add))
+    [
+        each(far, near_last, u16::wrapping_add),
+        each(far, far_first, u16::wrapping_add),
+    ]
 }
 
 /// Returns the bins of ranges that are one step longer than these numbers.
 #[inline(always)]
 fn bin<const N: usize, const LINES: usize>(
     lines: &[Line; LINES],
-    steps: [Numbers; N],
+    mut steps: [Numbers; N],
 ) -> [Numbers; N] {
-    let ranges = steps.map(|steps| steps.map(|steps| steps.saturating_add(1)));
+    for steps in &mut steps {
+        *steps = each(*steps, [1; COUNT], u16::saturating_add);
+    }
     let mut bins = [[u16::from(Bins::NOTHING); COUNT]; N];
     for line in lines {
-        for (bins, &ranges) in bins.iter_mut().zip(&ranges) {
+        for (bins, &ranges) in bins.iter_mut().zip(&steps) {
             *bins = each(*bins, ranges, |bin, range| line.at(range).min(bin));
         }
     }
@@ -148,7 +153,13 @@ fn average(a: u16, b: u16) -> u16 {
     ((u32::from(a) + u32::from(b) + 1) >> 1) as u16
 }
 
-/// Joins the numbers of each block.
+/// Returns the lower bytes of numbers.
+#[inline(always)]
+fn lower_bytes(numbers: Numbers) -> [u8; COUNT] {
+    std::array::from_fn(|i| numbers[i] as u8)
+}
+
+/// Joins the numbers of each block. `map` of arrays would move them through memory.
 #[inline(always)]
 fn each(a: Numbers, b: Numbers, join: impl Fn(u16, u16) -> u16) -> Numbers {
     std::array::from_fn(|i| join(a[i], b[i]))
