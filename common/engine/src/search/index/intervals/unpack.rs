@@ -3,9 +3,6 @@
 use super::{ALL, PACKED, STRETCHES};
 use crate::simd::{Kernel, Set};
 
-/// First and last bin of the near interval, then of the far one.
-pub(super) type Ends<'a> = [&'a mut [u8]; 4];
-
 /// Returns the last bin of the near interval.
 #[inline(always)]
 pub(crate) fn near_end(nearest: u8, farthest: u8, widths: u8) -> u8 {
@@ -36,7 +33,8 @@ pub(super) const fn width(nibble: u8) -> u8 {
 /// Kernel that unpacks the intervals of a block: all rows have a byte for each direction.
 pub(super) struct Unpacking<'a> {
     pub packed: [&'a [u8]; PACKED],
-    pub ends: Ends<'a>,
+    /// First and last bin of the near interval, then of the far one.
+    pub ends: [&'a mut [u8]; 4],
 }
 
 impl Kernel for Unpacking<'_> {
