@@ -14,7 +14,7 @@ mod database;
 
 use std::collections::HashMap;
 use std::fs::File;
-use std::io::{BufWriter, Seek, Write};
+use std::io::{self, BufWriter, Seek, Write};
 use std::path::Path;
 
 use rusqlite::Row;
@@ -42,13 +42,11 @@ pub(crate) fn as_recording(
 ) -> Result<(File, Option<Damage>), RecordingError> {
     let sink = tempfile::tempfile().map_err(|error| write_failed(&error))?;
     let mut writer = RecordingWriter::new(BufWriter::new(sink), Packing::Plain)?;
-    let bag = Bag {
-        path: &listed.path,
-        database: Database::open(&listed.path, place)?,
-    };
-    let found = bag.write(&mut writer)?;
+    let database = Database::open(&listed.path, place);
+    let written = database.and_then(|database| Ok((write(&database, &mut writer)?, database)));
+    let (found, database) = written.map_err(|fault| fault.of(&listed.path))?;
     let damage = match listed.messages {
-        Some(claimed) if claimed > found && bag.database.lacks_log => Some(Damage::MissingLog {
+        Some(claimed) if claimed > found && database.lacks_log => Some(Damage::MissingLog {
             log: database::log_of(&listed.path).display().to_string(),
             claimed,
             found,
@@ -62,85 +60,89 @@ pub(crate) fn as_recording(
     Ok((file, damage))
 }
 
-fn write_failed(error: &std::io::Error) -> RecordingError {
+fn write_failed(error: &io::Error) -> RecordingError {
     let folder = std::env::temp_dir();
     RecordingError::Write {
         reason: format!("a temporary file in {}: {error}", folder.display()),
     }
 }
 
-struct Bag<'p> {
-    path: &'p Path,
-    database: Database,
+/// Fault of a bag, whose path is not known here.
+#[derive(Debug, thiserror::Error)]
+enum Fault {
+    #[error(transparent)]
+    Sqlite(#[from] rusqlite::Error),
+    #[error("{0}")]
+    Content(String),
+    #[error(transparent)]
+    Unreadable(#[from] io::Error),
+    #[error(transparent)]
+    Recording(#[from] RecordingError),
 }
 
-impl Bag<'_> {
-    fn write<W: Write + Seek>(
-        &self,
-        writer: &mut RecordingWriter<W>,
-    ) -> Result<u64, RecordingError> {
-        let definitions = self.definitions()?;
-        let mut query = self
-            .database
-            .connection
-            .prepare(MESSAGES)
-            .map_err(self.failed())?;
-        let mut rows = query.query(()).map_err(self.failed())?;
-        let mut messages = 0;
-        while let Some(row) = rows.next().map_err(self.failed())? {
-            let message = self.message(row)?;
-            let (topic, schema) = (&*message.topic, &*message.schema);
-            let text = definition_in(definitions.get(schema), schema);
-            let time = message.time_ns;
-            writer.write_bytes(topic, schema, text, &message.encoding, time, message.data)?;
-            messages += 1;
+impl Fault {
+    fn damaged(found: &str) -> Self {
+        let advice = "what can be saved of it, `sqlite3 FILE .recover` saves";
+        Fault::Content(format!("it is damaged: {}; {advice}", found.trim()))
+    }
+
+    fn of(self, path: &Path) -> RecordingError {
+        match self {
+            Fault::Sqlite(_) | Fault::Content(_) => refused(path, self.to_string()),
+            Fault::Unreadable(error) => RecordingError::open(path)(error),
+            Fault::Recording(error) => error,
         }
-        Ok(messages)
     }
+}
 
-    fn definitions(&self) -> Result<HashMap<String, String>, RecordingError> {
-        let has_any = self
-            .database
-            .connection
-            .table_exists(None, "message_definitions")
-            .map_err(self.failed())?;
-        if !has_any {
-            return Ok(HashMap::new());
+fn write<W: Write + Seek>(
+    database: &Database,
+    writer: &mut RecordingWriter<W>,
+) -> Result<u64, Fault> {
+    let definitions = definitions(database)?;
+    let mut query = database.connection.prepare(MESSAGES)?;
+    let mut rows = query.query(())?;
+    let mut messages = 0;
+    while let Some(row) = rows.next()? {
+        let message = message(row)?;
+        let (topic, schema) = (&*message.topic, &*message.schema);
+        let text = definition_in(definitions.get(schema), schema);
+        let time = message.time_ns;
+        writer.write_bytes(topic, schema, text, &message.encoding, time, message.data)?;
+        messages += 1;
+    }
+    Ok(messages)
+}
+
+fn definitions(database: &Database) -> rusqlite::Result<HashMap<String, String>> {
+    let connection = &database.connection;
+    if !connection.table_exists(None, "message_definitions")? {
+        return Ok(HashMap::new());
+    }
+    let mut query = connection.prepare(DEFINITIONS)?;
+    query
+        .query_map((), |row| Ok((row.get(0)?, row.get(1)?)))?
+        .collect()
+}
+
+fn message<'r>(row: &'r Row<'_>) -> Result<Message<'r>, Fault> {
+    let topic: Option<String> = row.get(0)?;
+    let topic = topic.ok_or_else(|| Fault::damaged("a message of a topic that is not there"))?;
+    let data = match row.get_ref(4)? {
+        ValueRef::Blob(data) => data,
+        other => {
+            let found = other.data_type();
+            let reason = format!("a message of {topic} is of type {found}; allowed: blob");
+            return Err(Fault::Content(reason));
         }
-        let mut query = self
-            .database
-            .connection
-            .prepare(DEFINITIONS)
-            .map_err(self.failed())?;
-        let pairs = query.query_map((), |row| Ok((row.get(0)?, row.get(1)?)));
-        let pairs = pairs.map_err(self.failed())?;
-        pairs.collect::<Result<_, _>>().map_err(self.failed())
-    }
-
-    fn message<'r>(&self, row: &'r Row<'_>) -> Result<Message<'r>, RecordingError> {
-        let topic: Option<String> = row.get(0).map_err(self.failed())?;
-        let topic =
-            topic.ok_or_else(|| damaged(self.path, "a message of a topic that is not there"))?;
-        let data = match row.get_ref(4).map_err(self.failed())? {
-            ValueRef::Blob(data) => data,
-            other => {
-                let found = other.data_type();
-                let reason = format!("a message of {topic} is of type {found}; allowed: blob");
-                return Err(refused(self.path, reason));
-            }
-        };
-        Ok(Message {
-            topic,
-            schema: row.get(1).map_err(self.failed())?,
-            encoding: row.get(2).map_err(self.failed())?,
-            time_ns: row.get(3).map_err(self.failed())?,
-            data,
-        })
-    }
-
-    fn failed(&self) -> impl Fn(rusqlite::Error) -> RecordingError {
-        |error| refused(self.path, error.to_string())
-    }
+    };
+    Ok(Message {
+        topic,
+        schema: row.get(1)?,
+        encoding: row.get(2)?,
+        time_ns: row.get(3)?,
+        data,
+    })
 }
 
 struct Message<'r> {
@@ -149,11 +151,6 @@ struct Message<'r> {
     encoding: String,
     time_ns: i64,
     data: &'r [u8],
-}
-
-fn damaged(path: &Path, found: &str) -> RecordingError {
-    let advice = "what can be saved of it, `sqlite3 FILE .recover` saves";
-    refused(path, format!("it is damaged: {}; {advice}", found.trim()))
 }
 
 #[cfg(test)]

@@ -27,19 +27,15 @@ impl Recording {
     /// If several topics qualify, or the map is invalid.
     pub fn map(&self) -> Result<Option<OccupancyGrid>, RecordingError> {
         let mut newest = None;
-        for record in self.on_topic(Kind::Map)? {
-            newest = Some(record?);
+        for map in self.maps()? {
+            newest = Some(map?);
         }
-        let Some(record) = newest else {
+        let Some((log_time_ns, map)) = newest else {
             return Ok(None);
         };
-        let Message::Map(map) = &record.message else {
-            return Ok(None);
-        };
-        let grid = map
-            .to_grid()
-            .map_err(|source| self.unusable(&record, source))?;
-        Ok(Some(grid))
+        let topic = self.topic(Kind::Map)?.unwrap_or_default();
+        let unusable = |source| self.unusable(&topic, log_time_ns, source);
+        map.to_grid().map(Some).map_err(unusable)
     }
 
     /// Iterates over all maps of the readable part by log time, with that time in nanoseconds. A
@@ -224,7 +220,8 @@ impl Recording {
             let Message::PoseStamped(pose) = &record.message else {
                 continue;
             };
-            let truth = GroundTruth::of(pose).map_err(|source| self.unusable(&record, source))?;
+            let truth = GroundTruth::of(pose)
+                .map_err(|source| self.unusable(&record.topic, record.log_time_ns, source))?;
             let stamp_ns = pose.header.stamp.as_ns();
             match truths.entry(stamp_ns) {
                 Entry::Vacant(free) => {
@@ -260,22 +257,25 @@ impl Recording {
         };
         let is_meant = move |item: &Result<Record, RecordingError>| {
             let of = match item {
-                Ok(record) => &*record.topic,
-                Err(
-                    RecordingError::Message { topic, .. } | RecordingError::NotCdr { topic, .. },
-                ) => topic,
-                Err(_) => return true,
+                Ok(record) => Some(&*record.topic),
+                Err(error) => error.topic(),
             };
-            topic.as_deref() == Some(of)
+            of.is_none_or(|of| topic.as_deref() == Some(of))
         };
         Ok(self.readable(kinds).filter(is_meant))
     }
 
-    fn unusable(&self, record: &Record, source: ConversionError) -> RecordingError {
+    /// Error of a message whose values cannot be used.
+    pub fn unusable(
+        &self,
+        topic: &str,
+        log_time_ns: i64,
+        source: ConversionError,
+    ) -> RecordingError {
         RecordingError::Unusable {
             path: self.path().to_owned(),
-            topic: record.topic.to_string(),
-            log_time_ns: record.log_time_ns,
+            topic: topic.to_owned(),
+            log_time_ns,
             source,
         }
     }

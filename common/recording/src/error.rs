@@ -112,6 +112,16 @@ impl RecordingError {
             source,
         }
     }
+
+    /// Topic of the message that does not decode, if that is the error.
+    pub fn topic(&self) -> Option<&str> {
+        match self {
+            RecordingError::Message { topic, .. } | RecordingError::NotCdr { topic, .. } => {
+                Some(topic)
+            }
+            _ => None,
+        }
+    }
 }
 
 /// Returns what to do with a recording whose only lasers are in point clouds, if that is so.

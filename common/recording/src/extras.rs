@@ -86,7 +86,7 @@ impl Extras {
 
 #[cfg(test)]
 mod tests {
-    use crate::Recording;
+    use crate::sample;
     use crate::write::{Packing, RecordingWriter};
 
     #[test]
@@ -98,8 +98,7 @@ mod tests {
             .attach("a.yaml", "text/yaml", 7, b"image: a.png")
             .unwrap();
         writer.attach("empty", "", 8, b"").unwrap();
-        let bytes = writer.finish().unwrap().into_inner();
-        let recording = Recording::from_bytes("r.mcap", bytes).unwrap();
+        let recording = sample::opened(writer);
         assert_eq!(recording.damage(), None);
         assert_eq!(recording.metadata()[0].name, "backcast");
         assert_eq!(recording.metadata()[0].entries, entries);

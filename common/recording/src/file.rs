@@ -35,29 +35,21 @@ impl RecordedFile {
         RecordedFile::at(listed, path)
     }
 
-    /// Opens the file at `path`; errors call it by its listed name.
-    fn at(listed: &Listed, path: &Path) -> Result<Self, RecordingError> {
-        let content = Content::of(path)?;
-        if content != Content::Zstd {
-            return RecordedFile::with_content(listed, path, content);
-        }
-        let unpacked = unpack::file(path, |start| match Content::of_bytes(start) {
-            Content::Mcap | Content::Sqlite => Ok(()),
-            _ => Err(RecordingError::Unpack {
-                path: listed.path.clone(),
-                reason: "what zstd packed there is neither an MCAP file nor a bag in SQLite".into(),
-            }),
-        })?;
-        RecordedFile::with_content(listed, unpacked.path(), Content::of(unpacked.path())?)
-    }
-
-    /// Opens the file at `place` with the given content; errors call it by its listed name.
-    fn with_content(
-        listed: &Listed,
-        place: &Path,
-        content: Content,
-    ) -> Result<Self, RecordingError> {
-        match content {
+    /// Opens the file at `place`; errors call it by its listed name.
+    fn at(listed: &Listed, place: &Path) -> Result<Self, RecordingError> {
+        match Content::of(place)? {
+            Content::Zstd => {
+                let unpacked = unpack::file(place, |start| match Content::of_bytes(start) {
+                    Content::Mcap | Content::Sqlite => Ok(()),
+                    _ => Err(RecordingError::Unpack {
+                        path: listed.path.clone(),
+                        reason:
+                            "what zstd packed there is neither an MCAP file nor a bag in SQLite"
+                                .into(),
+                    }),
+                })?;
+                RecordedFile::at(listed, unpacked.path())
+            }
             Content::Foreign(what, advice) => Err(foreign(&listed.path, what, advice)),
             #[cfg(feature = "rosbag2")]
             Content::Sqlite => {
@@ -111,7 +103,11 @@ impl RecordedFile {
                 bytes,
                 survey,
             }),
-            Err(damage) => Err(damaged(path, damage)),
+            Err(damage) => Err(RecordingError::Damaged {
+                path,
+                readable: 0,
+                damage,
+            }),
         }
     }
 
@@ -134,14 +130,6 @@ impl RecordedFile {
         }
         let at = at as u64;
         Err(Damage::Truncated { length, at })
-    }
-}
-
-fn damaged(path: PathBuf, damage: Damage) -> RecordingError {
-    RecordingError::Damaged {
-        path,
-        readable: 0,
-        damage,
     }
 }
 

@@ -1,6 +1,8 @@
 //! A small recording for this crate's tests: a map, a mount, a few scans with odometry and ground
 //! truth in several chunks, and a message of an unknown type.
 
+use std::io::Cursor;
+
 use geometry::Pose;
 use map::OccupancyGrid;
 use ros::{
@@ -9,7 +11,7 @@ use ros::{
 };
 
 use crate::write::{Packing, RecordingWriter};
-use crate::{GROUND_TRUTH, MAP, Message, ODOM, Record, SCAN, TF_STATIC};
+use crate::{GROUND_TRUTH, MAP, Message, ODOM, Record, Recording, SCAN, TF_STATIC};
 
 pub(crate) const SCANS: usize = 6;
 pub(crate) const MOUNT: Pose = Pose::new(0.78, 0.1, 0.25);
@@ -56,12 +58,8 @@ pub(crate) fn bytes(packing: Packing) -> Vec<u8> {
     chunks.swap(1, 2);
     for chunk in chunks {
         for record in chunk {
-            let Record {
-                topic,
-                log_time_ns,
-                message,
-            } = record;
-            writer.write(topic, *log_time_ns, message).unwrap();
+            let (topic, time) = (&record.topic, record.log_time_ns);
+            writer.write(topic, time, &record.message).unwrap();
         }
         writer.flush().unwrap();
     }
@@ -70,6 +68,12 @@ pub(crate) fn bytes(packing: Packing) -> Vec<u8> {
         .write_bytes("/rosout", log, "string msg", "cdr", stamp_ns(1), b"hello")
         .unwrap();
     writer.finish().unwrap().into_inner()
+}
+
+/// Opens what was written.
+pub(crate) fn opened(writer: RecordingWriter<Cursor<Vec<u8>>>) -> Recording {
+    let bytes = writer.finish().unwrap().into_inner();
+    Recording::from_bytes("r.mcap", bytes).unwrap()
 }
 
 fn header(scan: usize, frame: &str) -> Header {

@@ -33,8 +33,7 @@ impl Survey {
                 found: shown(bytes),
             });
         }
-        let (mut survey, damage) = Pass::over(bytes);
-        survey.damage = damage;
+        let mut survey = Pass::over(bytes);
         for block in &survey.blocks {
             for (&channel, &count) in &block.counts {
                 survey.registry.count(channel, count);

@@ -120,8 +120,7 @@ mod tests {
         writer
             .write_bytes(TOPIC, schema, "", "cdr", 2, &body)
             .unwrap();
-        let bytes = writer.finish().unwrap().into_inner();
-        Recording::from_bytes("r.mcap", bytes).unwrap()
+        crate::sample::opened(writer)
     }
 
     fn options(topic: &str, mount: Option<&str>) -> CloudOptions {

@@ -35,10 +35,12 @@ fn within(packed: &[u8], most: u64) -> Result<Vec<u8>, String> {
         .map_err(|error| format!("it is packed with zstd, and does not unpack: {error}"))?;
     match unpacked.len() as u64 <= most {
         true => Ok(unpacked),
-        false => Err(format!(
-            "it unpacks to more than {most} bytes, the most that are allowed"
-        )),
+        false => Err(too_much(most)),
     }
+}
+
+fn too_much(most: u64) -> String {
+    format!("it unpacks to more than {most} bytes, the most that are allowed")
 }
 
 /// Saves what comes through a pipe to a temporary file that is deleted when it is dropped.
@@ -48,8 +50,8 @@ pub(crate) fn saved(path: &Path) -> Result<NamedTempFile, RecordingError> {
         false => path,
     };
     let mut stream = File::open(source).map_err(RecordingError::open(path))?;
-    let mut sink = NamedTempFile::new().map_err(|error| no_room(path, &error))?;
-    std::io::copy(&mut stream, &mut sink).map_err(|error| no_room(path, &error))?;
+    let mut sink = NamedTempFile::new().map_err(no_room(path))?;
+    std::io::copy(&mut stream, &mut sink).map_err(no_room(path))?;
     Ok(sink)
 }
 
@@ -65,14 +67,14 @@ pub(crate) fn file(
     let most = size.saturating_mul(MAX_FACTOR).saturating_add(MAX_BESIDE);
     let broken = |error: std::io::Error| refused(path, format!("its zstd is broken: {error}"));
     let mut decoder = Decoder::new(BufReader::new(packed)).map_err(broken)?;
-    let mut sink = NamedTempFile::new().map_err(|error| no_room(path, &error))?;
+    let mut sink = NamedTempFile::new().map_err(no_room(path))?;
     let mut step = Vec::with_capacity(STEP_BYTES);
     let mut allows = Some(allows);
     let mut unpacked = 0;
     loop {
         step.clear();
-        let taken = decoder.by_ref().take(STEP_BYTES as u64);
-        read(taken, &mut step).map_err(broken)?;
+        let mut taken = decoder.by_ref().take(STEP_BYTES as u64);
+        taken.read_to_end(&mut step).map_err(broken)?;
         if let Some(allows) = allows.take() {
             allows(&step)?;
         }
@@ -81,18 +83,12 @@ pub(crate) fn file(
         }
         unpacked += step.len() as u64;
         if unpacked > most {
-            let reason = format!("it unpacks to more than {most} bytes, the most that are allowed");
-            return Err(refused(path, reason));
+            return Err(refused(path, too_much(most)));
         }
-        sink.write_all(&step)
-            .map_err(|error| no_room(path, &error))?;
+        sink.write_all(&step).map_err(no_room(path))?;
     }
-    sink.rewind().map_err(|error| no_room(path, &error))?;
+    sink.rewind().map_err(no_room(path))?;
     Ok(sink)
-}
-
-fn read(mut from: impl Read, to: &mut Vec<u8>) -> std::io::Result<usize> {
-    from.read_to_end(to)
 }
 
 fn refused(path: &Path, reason: String) -> RecordingError {
@@ -102,11 +98,13 @@ fn refused(path: &Path, reason: String) -> RecordingError {
     }
 }
 
-fn no_room(path: &Path, error: &std::io::Error) -> RecordingError {
-    let folder = std::env::temp_dir();
-    let folder = folder.display();
-    let reason = format!("a temporary file in {folder} (TMPDIR names another place): {error}");
-    refused(path, reason)
+fn no_room(path: &Path) -> impl Fn(std::io::Error) -> RecordingError {
+    move |error| {
+        let folder = std::env::temp_dir();
+        let folder = folder.display();
+        let reason = format!("a temporary file in {folder} (TMPDIR names another place): {error}");
+        refused(path, reason)
+    }
 }
 
 #[cfg(test)]

@@ -94,14 +94,8 @@ impl<W: Write + Seek> RecordingWriter<W> {
             .encode()
             .map_err(|error| refused(error.to_string()))?;
         let kind = message.kind();
-        let definition = Definition {
-            topic,
-            schema: kind.schema(),
-            text: kind.definition(),
-            encoding: "cdr",
-            latched: is_latched(kind),
-        };
-        self.write_body(&definition, log_time_ns, &body)
+        let (schema, text) = (kind.schema(), kind.definition());
+        self.write_bytes(topic, schema, text, "cdr", log_time_ns, &body)
     }
 
     pub fn write_encoded(&mut self, message: &Encoded) -> Result<(), RecordingError> {
@@ -116,7 +110,7 @@ impl<W: Write + Seek> RecordingWriter<W> {
     }
 
     /// Writes the encoded bytes of a message of any type; the first message of a topic determines
-    /// its encoding. A topic is latched under the same condition as in [`RecordingWriter::write`].
+    /// its encoding. The topics of maps and of static transforms are latched.
     ///
     /// # Errors
     /// If the topic has another schema, the time is before 1970, or it cannot be
@@ -135,7 +129,10 @@ impl<W: Write + Seek> RecordingWriter<W> {
             schema,
             text: definition,
             encoding,
-            latched: Kind::of(schema, topic).is_some_and(is_latched),
+            latched: matches!(
+                Kind::of(schema, topic),
+                Some(Kind::Map | Kind::StaticTransforms)
+            ),
         };
         self.write_body(&definition, log_time_ns, body)
     }
@@ -236,10 +233,6 @@ fn failed(error: McapError) -> RecordingError {
 
 fn refused(reason: String) -> RecordingError {
     RecordingError::Write { reason }
-}
-
-fn is_latched(kind: Kind) -> bool {
-    matches!(kind, Kind::Map | Kind::StaticTransforms)
 }
 
 /// Returns the text of a schema: that of a file, or ours for a known kind; else nothing.

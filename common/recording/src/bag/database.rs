@@ -11,15 +11,14 @@
 
 use std::fmt::Write;
 use std::fs::File;
-use std::io::Read;
+use std::io::{self, Read};
 use std::os::unix::ffi::OsStrExt;
 use std::path::{Path, PathBuf};
 
 use rusqlite::{Connection, OpenFlags};
 use tempfile::TempDir;
 
-use super::{damaged, refused};
-use crate::RecordingError;
+use super::Fault;
 use crate::folder::with_ending;
 
 pub(super) struct Database {
@@ -36,22 +35,20 @@ pub(super) fn log_of(path: &Path) -> PathBuf {
 
 impl Database {
     /// Opens the database at `place`, which errors call `path`, and checks its structure.
-    pub(super) fn open(path: &Path, place: &Path) -> Result<Self, RecordingError> {
-        let failed = |error: rusqlite::Error| refused(path, error.to_string());
+    pub(super) fn open(path: &Path, place: &Path) -> Result<Self, Fault> {
         let has_content =
             |beside: &PathBuf| std::fs::metadata(beside).is_ok_and(|found| found.len() > 0);
         let logs = ["-wal", "-journal"].map(|ending| with_ending(place, ending));
         let copy = match logs.iter().any(has_content) {
-            true => Some(copied(path, place, &logs)?),
+            true => Some(copied(place, &logs).map_err(no_room)?),
             false => None,
         };
-        let lacks_log = copy.is_none() && is_in_wal_mode(path, place)?;
-        let opened = match &copy {
-            Some(folder) => open_copy(&folder.path().join(COPY)),
-            None => open_alone(place, lacks_log),
-        };
+        let lacks_log = copy.is_none() && is_in_wal_mode(place)?;
         let database = Database {
-            connection: opened.map_err(failed)?,
+            connection: match &copy {
+                Some(folder) => open_copy(&folder.path().join(COPY)),
+                None => open_alone(place, lacks_log),
+            }?,
             lacks_log,
             _copy: copy,
         };
@@ -59,87 +56,72 @@ impl Database {
         Ok(database)
     }
 
-    fn check(&self, path: &Path, place: &Path) -> Result<(), RecordingError> {
-        let failed = |error: rusqlite::Error| refused(path, error.to_string());
+    fn check(&self, path: &Path, place: &Path) -> Result<(), Fault> {
+        let connection = &self.connection;
         let ask = "PRAGMA quick_check(1)";
-        let found: String = self
-            .connection
-            .query_row(ask, (), |row| row.get(0))
-            .map_err(failed)?;
+        let found: String = connection.query_row(ask, (), |row| row.get(0))?;
         if found != "ok" {
-            return Err(damaged(path, &found));
+            return Err(Fault::damaged(&found));
         }
-        self.check_tables(path)?;
-        let has_messages = self.connection.table_exists(None, "messages");
-        if self.lacks_log && !has_messages.map_err(failed)? {
-            let log = log_of(path);
-            return Err(refused(
-                path,
-                format!(
-                    "its messages are in {}, which is missing: copy it along",
-                    log.display()
-                ),
-            ));
+        self.check_tables()?;
+        if self.lacks_log && !connection.table_exists(None, "messages")? {
+            return Err(Fault::Content(format!(
+                "its messages are in {}, which is missing: copy it along",
+                log_of(path).display()
+            )));
         }
         if self._copy.is_some() {
             // Its last page may be in the log.
             return Ok(());
         }
         // SQLite reads the missing bytes of a truncated last page as zeros.
-        let page: u32 = self
-            .connection
-            .query_row("PRAGMA page_size", (), |row| row.get(0))
-            .map_err(failed)?;
-        let length = std::fs::metadata(place).map_err(RecordingError::open(path))?;
-        match length.len().checked_rem(page.into()) {
+        let page: u32 = connection.query_row("PRAGMA page_size", (), |row| row.get(0))?;
+        match std::fs::metadata(place)?.len().checked_rem(page.into()) {
             Some(0) => Ok(()),
-            _ => Err(damaged(path, "it ends within a page")),
+            _ => Err(Fault::damaged("it ends within a page")),
         }
     }
 
     /// Rejects views and virtual tables in place of a bag's tables, because a query of them may
     /// never end.
-    fn check_tables(&self, path: &Path) -> Result<(), RecordingError> {
-        let failed = |error: rusqlite::Error| refused(path, error.to_string());
+    fn check_tables(&self) -> Result<(), Fault> {
         let ask = "SELECT name FROM sqlite_schema WHERE name COLLATE NOCASE \
              IN ('messages', 'topics', 'message_definitions') \
              AND (type = 'view' OR sql LIKE 'CREATE VIRTUAL%')";
-        let mut query = self.connection.prepare(ask).map_err(failed)?;
-        let mut names = query.query_map((), |row| row.get(0)).map_err(failed)?;
-        match names.next().transpose().map_err(failed)? {
+        let mut query = self.connection.prepare(ask)?;
+        let mut names = query.query_map((), |row| row.get::<_, String>(0))?;
+        match names.next().transpose()? {
             None => Ok(()),
-            Some::<String>(name) => Err(refused(path, format!("its {name} is no table of a bag"))),
+            Some(name) => Err(Fault::Content(format!("its {name} is no table of a bag"))),
         }
     }
 }
 
 const COPY: &str = "bag.db3";
 
-fn copied(path: &Path, place: &Path, logs: &[PathBuf; 2]) -> Result<TempDir, RecordingError> {
-    let no_room = |error: std::io::Error| {
-        let folder = std::env::temp_dir();
-        let folder = folder.display();
-        refused(
-            path,
-            format!("it cannot be copied to {folder} (TMPDIR names another place): {error}"),
-        )
-    };
-    let folder = TempDir::new().map_err(no_room)?;
+fn no_room(error: io::Error) -> Fault {
+    let folder = std::env::temp_dir();
+    let folder = folder.display();
+    Fault::Content(format!(
+        "it cannot be copied to {folder} (TMPDIR names another place): {error}"
+    ))
+}
+
+fn copied(place: &Path, logs: &[PathBuf; 2]) -> io::Result<TempDir> {
+    let folder = TempDir::new()?;
     let copy = folder.path().join(COPY);
-    std::fs::copy(place, &copy).map_err(no_room)?;
-    writable(&copy).map_err(no_room)?;
-    for (log, ending) in logs.iter().zip(["-wal", "-journal"]) {
-        let copy = with_ending(&copy, ending);
-        if log.is_file() {
-            std::fs::copy(log, &copy).map_err(no_room)?;
-            writable(&copy).map_err(no_room)?;
+    let [log, journal] = ["-wal", "-journal"].map(|ending| with_ending(&copy, ending));
+    for (from, to) in [(place, copy), (&*logs[0], log), (&*logs[1], journal)] {
+        if from.is_file() {
+            std::fs::copy(from, &to)?;
+            writable(&to)?;
         }
     }
     Ok(folder)
 }
 
 /// Makes a copy writable; it inherits the permissions of the original.
-fn writable(path: &Path) -> std::io::Result<()> {
+fn writable(path: &Path) -> io::Result<()> {
     use std::os::unix::fs::PermissionsExt;
     std::fs::set_permissions(path, std::fs::Permissions::from_mode(0o600))
 }
@@ -178,12 +160,9 @@ fn immutable(place: &Path) -> String {
 /// Write and read version of the file format that stand for WAL mode.
 const WAL_VERSIONS: [u8; 2] = [2, 2];
 
-fn is_in_wal_mode(path: &Path, place: &Path) -> Result<bool, RecordingError> {
+fn is_in_wal_mode(place: &Path) -> io::Result<bool> {
     let mut header = Vec::new();
-    let file = File::open(place).map_err(RecordingError::open(path))?;
-    file.take(20)
-        .read_to_end(&mut header)
-        .map_err(RecordingError::open(path))?;
+    File::open(place)?.take(20).read_to_end(&mut header)?;
     Ok(header.get(18..20) == Some(&WAL_VERSIONS[..]))
 }
 
@@ -210,14 +189,19 @@ mod tests {
         names
     }
 
-    /// Creates a database in WAL mode whose rows are in its log, as a killed recorder leaves it.
-    fn cut_off(folder: &Path) -> PathBuf {
-        let (open, path) = (folder.join("open.db3"), folder.join("r ü.db3"));
-        let writer = Connection::open(&open).unwrap();
+    fn writer(path: &Path) -> Connection {
+        let writer = Connection::open(path).unwrap();
         writer
             .query_row("PRAGMA journal_mode = WAL", (), |_| Ok(()))
             .unwrap();
         writer.execute_batch(TABLE).unwrap();
+        writer
+    }
+
+    /// Creates a database in WAL mode whose rows are in its log, as a killed recorder leaves it.
+    fn cut_off(folder: &Path) -> PathBuf {
+        let (open, path) = (folder.join("open.db3"), folder.join("r ü.db3"));
+        let writer = writer(&open);
         std::fs::copy(&open, &path).unwrap();
         std::fs::copy(log_of(&open), log_of(&path)).unwrap();
         drop(writer);
@@ -272,12 +256,7 @@ mod tests {
     fn a_database_that_was_closed_needs_no_log() {
         let folder = TempDir::new().unwrap();
         let path = folder.path().join("r?mode=rwc.db3");
-        let writer = Connection::open(&path).unwrap();
-        writer
-            .query_row("PRAGMA journal_mode = WAL", (), |_| Ok(()))
-            .unwrap();
-        writer.execute_batch(TABLE).unwrap();
-        drop(writer);
+        drop(writer(&path));
         assert_eq!(names(folder.path()), ["r?mode=rwc.db3"]);
         let database = Database::open(&path, &path).unwrap();
         assert_eq!((count(&database), database.lacks_log), (2, true));

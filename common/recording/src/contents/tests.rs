@@ -1,6 +1,7 @@
 use geometry::Pose;
 
 use super::*;
+use crate::sample;
 use crate::write::{Packing, RecordingWriter};
 use ros::{PoseStamped, TfMessage, TransformStamped};
 
@@ -9,8 +10,7 @@ fn recording(messages: &[(&str, Message)]) -> Recording {
     for (time, (topic, message)) in messages.iter().enumerate() {
         writer.write(topic, time as i64, message).unwrap();
     }
-    let bytes = writer.finish().unwrap().into_inner();
-    Recording::from_bytes("r.mcap", bytes).unwrap()
+    sample::opened(writer)
 }
 
 fn pose(sec: i32, x: f64) -> Message {
@@ -164,8 +164,7 @@ fn on_tf(base: &str, lasers: &[TransformStamped]) -> Recording {
             .write_bytes("/tf", TfMessage::SCHEMA, "", "cdr", time, &body)
             .unwrap();
     }
-    let bytes = writer.finish().unwrap().into_inner();
-    Recording::from_bytes("r.mcap", bytes).unwrap()
+    sample::opened(writer)
 }
 
 #[test]

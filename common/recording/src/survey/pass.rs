@@ -36,9 +36,8 @@ enum Part {
 }
 
 impl<'a> Pass<'a> {
-    /// Surveys a file that starts with the magic; returns its content and the damage that ends the
-    /// sound part, if any.
-    pub(crate) fn over(bytes: &'a [u8]) -> (Survey, Option<Damage>) {
+    /// Surveys a file that starts with the magic, up to its damage.
+    pub(crate) fn over(bytes: &'a [u8]) -> Survey {
         let mut pass = Pass {
             bytes,
             survey: Survey::default(),
@@ -49,10 +48,13 @@ impl<'a> Pass<'a> {
         let damage = pass.run().err();
         // Also before damage: everything read so far is sound.
         pass.close_loose();
-        if let Some(Damage::DataChecksum { .. }) = damage {
-            pass.drop_unchecked();
+        if let (Some(Damage::DataChecksum { .. }), Some(checked)) = (&damage, pass.unchecked_from) {
+            // Only chunks with their own checksum, and with nothing unchecked before them, are
+            // trusted.
+            pass.survey.blocks.truncate(checked);
         }
-        (pass.survey, damage)
+        pass.survey.damage = damage;
+        pass.survey
     }
 
     fn run(&mut self) -> Result<(), Damage> {
@@ -160,14 +162,6 @@ impl<'a> Pass<'a> {
         self.unchecked_from.get_or_insert(blocks);
     }
 
-    /// Drops messages after a wrong data checksum: only chunks with their own checksum, and with
-    /// nothing unchecked before them, are trusted.
-    fn drop_unchecked(&mut self) {
-        if let Some(checked) = self.unchecked_from {
-            self.survey.blocks.truncate(checked);
-        }
-    }
-
     fn check_count(&self, body: &[u8], at: u64) -> Result<(), Damage> {
         let Record::Statistics(statistics) = parse(op::STATISTICS, body, at)? else {
             return Ok(());
@@ -185,20 +179,18 @@ impl<'a> Pass<'a> {
     fn damage(&self, error: &McapError, at: usize, left: usize) -> Damage {
         let bytes = self.bytes;
         let from = |at| shown(bytes.get(at..).unwrap_or_default());
-        let truncated = Damage::Truncated {
-            length: bytes.len() as u64,
-            at: at as u64,
-        };
+        let (place, at, length) = (at, at as u64, bytes.len() as u64);
+        let truncated = Damage::Truncated { length, at };
         match (error, self.part) {
             (McapError::UnexpectedEof, _) => truncated,
             (&McapError::RecordTooLarge { len, .. }, _) if len > left as u64 => truncated,
             (&McapError::RecordTooLarge { opcode, len }, _) => Damage::Record {
-                at: at as u64,
+                at,
                 kind: name(opcode),
                 reason: format!("it has {len} bytes; at most {MAX_CHUNK_BYTES} are read"),
             },
             (&McapError::BadDataCrc { saved, calculated }, _) => Damage::DataChecksum {
-                end: at as u64,
+                end: at,
                 saved,
                 found: calculated,
             },
@@ -210,17 +202,17 @@ impl<'a> Pass<'a> {
                 }
             }
             (McapError::BadMagic, _) => Damage::End {
-                at: at as u64,
-                found: from(at),
+                at,
+                found: from(place),
             },
             (McapError::BytesAfterEndMagic, _) => Damage::End {
-                at: at as u64,
-                found: from(at + MAGIC.len()),
+                at,
+                found: from(place + MAGIC.len()),
             },
             // The reader parses the data end and the footer itself.
             (other, _) => Damage::Record {
-                at: at as u64,
-                kind: bytes.get(at).map_or("missing", |&opcode| name(opcode)),
+                at,
+                kind: bytes.get(place).map_or("missing", |&opcode| name(opcode)),
                 reason: reason(other),
             },
         }

@@ -1,10 +1,7 @@
 //! Tests of rosbag2 bags: folders with several parts, compressed or not, made from the recording of
 //! the corridor.
 
-#![allow(
-    clippy::unwrap_used,
-    reason = "a test fails by panicking, helpers of tests too"
-)]
+#![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 use std::io::Cursor;
 use std::path::{Path, PathBuf};

@@ -1,9 +1,6 @@
 //! Runs the published conformance suite of MCAP: every file opens as sound and holds exactly the
 //! messages, attachments and metadata that the suite lists.
-#![allow(
-    clippy::unwrap_used,
-    reason = "the lint spares test functions but not what they share"
-)]
+#![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
