@@ -205,11 +205,7 @@ impl Iterator for Source<'_> {
             let converted = match self.records.next()? {
                 Ok(record) if !self.channels.has(&record.topic) => continue,
                 Ok(record) if !self.selection.covers(record.log_time_ns) => continue,
-                Err(
-                    RecordingError::Message { topic, .. } | RecordingError::NotCdr { topic, .. },
-                ) if !self.channels.has(&topic) => {
-                    continue;
-                }
+                Err(error) if error.topic().is_some_and(|of| !self.channels.has(of)) => continue,
                 Err(RecordingError::Message { log_time_ns, .. })
                     if !self.selection.covers(log_time_ns) =>
                 {
