@@ -24,7 +24,6 @@ impl Accepted {
         }
     }
 
-    /// Fails if every scan was rejected.
     /// Fails if every scan was rejected; names the first reason.
     pub fn check(self, file: &Path) -> anyhow::Result<()> {
         match self.first_refusal {

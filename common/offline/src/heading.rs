@@ -11,14 +11,13 @@ use ros::measurements;
 use transport::with_causes;
 
 use super::TakenScan;
-use super::topics::concerns_other;
 
 /// Heading data of a recording, and the configured source.
 #[derive(Debug, Clone)]
 pub(crate) struct Headings {
-    source: HeadingSource,
+    pub(crate) source: HeadingSource,
     history: History,
-    notes: Vec<String>,
+    pub(crate) notes: Vec<String>,
 }
 
 impl Headings {
@@ -41,14 +40,6 @@ impl Headings {
             history,
             notes,
         })
-    }
-
-    pub(crate) fn notes(&self) -> &[String] {
-        &self.notes
-    }
-
-    pub(crate) fn source(&self) -> HeadingSource {
-        self.source
     }
 
     /// Heading of the laser at the time of `scan`, in radians; `None` if it is to be searched.
@@ -106,7 +97,7 @@ pub fn each_odometry(
             Ok(record) => odometry_of(recording, &record),
             // The damage follows all readable messages, and is reported with the scans.
             Err(RecordingError::Damaged { .. }) => break,
-            Err(error) if concerns_other(&error, topic) => continue,
+            Err(error) if error.topic().is_some_and(|of| *of != **topic) => continue,
             Err(error @ RecordingError::Message { .. }) => Err(error),
             Err(error) => return Err(error),
         };
@@ -128,11 +119,6 @@ fn odometry_of(recording: &Recording, record: &Record) -> Result<Option<Odometry
         return Ok(None);
     };
     let odometry = measurements::odometry(message);
-    let odometry = odometry.map_err(|source| RecordingError::Unusable {
-        path: recording.path().to_owned(),
-        topic: record.topic.to_string(),
-        log_time_ns: record.log_time_ns,
-        source,
-    })?;
-    Ok(Some(odometry))
+    let unusable = |source| recording.unusable(&record.topic, record.log_time_ns, source);
+    Ok(Some(odometry.map_err(unusable)?))
 }

@@ -23,7 +23,7 @@ pub use heading::each_odometry;
 pub use layout::{check_map, frame_of, sides_of};
 pub use maps::map_in;
 pub use options::{EngineOptions, NamedMap, Options};
-pub use scans::{Scans, TakenScan};
+pub use scans::{Scans, TakenScan, as_measured};
 pub use session::{Reply, Session, View};
 pub use topics::TopicOptions;
 pub use world::{Answer, BeamEnd, Field, KnownMap, ScanAt, World};

@@ -7,16 +7,14 @@ use std::iter::Peekable;
 use anyhow::anyhow;
 use map::OccupancyGrid;
 use recording::{Recording, RecordingError};
-use ros::OccupancyGridMsg;
 use transport::with_causes;
 
-/// A recorded map with its log time.
-type Recorded = Result<(i64, OccupancyGridMsg), RecordingError>;
+/// A map with the log time from which it counts, or the reason why it cannot be decoded.
+type Due<'a> = (i64, Result<Cow<'a, OccupancyGrid>, String>);
 
 /// Maps of a recording by log time, or one map for all scans.
 pub(super) struct Maps<'a> {
-    given: Option<&'a OccupancyGrid>,
-    recorded: Peekable<Box<dyn Iterator<Item = Recorded> + 'a>>,
+    maps: Peekable<Box<dyn Iterator<Item = Due<'a>> + 'a>>,
     /// True once a map has been returned.
     began: bool,
 }
@@ -24,39 +22,36 @@ pub(super) struct Maps<'a> {
 impl<'a> Maps<'a> {
     /// Uses the given map for all scans, and ignores recorded ones.
     pub(super) fn given(map: &'a OccupancyGrid) -> Self {
-        Maps {
-            given: Some(map),
-            recorded: Maps::of(std::iter::empty()),
-            began: false,
-        }
+        Maps::of(std::iter::once((i64::MIN, Ok(Cow::Borrowed(map)))))
     }
 
     /// Contains no map, since the map has already been prepared.
     pub(super) fn none() -> Self {
-        Maps {
-            given: None,
-            recorded: Maps::of(std::iter::empty()),
-            began: true,
-        }
+        Maps::of(std::iter::empty())
     }
 
     pub(super) fn recorded(recording: &'a Recording) -> Result<Self, RecordingError> {
-        Ok(Maps {
-            given: None,
-            recorded: Maps::of(recording.maps()?),
-            began: false,
-        })
+        let maps = recording.maps()?;
+        Ok(Maps::of(maps.map(|recorded| match recorded {
+            Ok((time_ns, map)) => {
+                let grid = map.to_grid().map(Cow::Owned);
+                (time_ns, grid.map_err(|error| with_causes(&error)))
+            }
+            // A map that cannot be decoded has no log time and is due at once.
+            Err(error) => (i64::MIN, Err(with_causes(&error))),
+        })))
     }
 
-    fn of(
-        maps: impl Iterator<Item = Recorded> + 'a,
-    ) -> Peekable<Box<dyn Iterator<Item = Recorded> + 'a>> {
-        let maps: Box<dyn Iterator<Item = Recorded> + 'a> = Box::new(maps);
-        maps.peekable()
+    fn of(maps: impl Iterator<Item = Due<'a>> + 'a) -> Self {
+        let maps: Box<dyn Iterator<Item = Due<'a>> + 'a> = Box::new(maps);
+        Maps {
+            maps: maps.peekable(),
+            began: false,
+        }
     }
 
     pub(super) fn is_empty(&mut self) -> bool {
-        self.given.is_none() && self.recorded.peek().is_none()
+        self.maps.peek().is_none()
     }
 
     /// Returns the maps that arrived since the last call, for a scan of this log time.
@@ -66,29 +61,17 @@ impl<'a> Maps<'a> {
         check: impl Fn(&OccupancyGrid) -> Result<(), String>,
     ) -> Arrived<'a> {
         let mut arrived = Arrived::default();
-        if let Some(map) = self.given.filter(|_| !self.began) {
-            arrived.take(Ok(Cow::Borrowed(map)), &check);
-            self.began = true;
-        }
-        while let Some(next) = self.recorded.peek() {
-            // A map that cannot be decoded has no log time and is due at once.
-            let is_due = next.as_ref().map_or(true, |(time, _)| *time <= log_time_ns);
-            if !is_due && self.began {
-                break;
-            }
-            self.began = true;
-            let next = self.recorded.next();
-            // Keeps one map at a time, since there may be many large ones.
-            arrived.take(next.map_or(Err(String::new()), grid), &check);
+        // The first map counts for the scans before it, too.
+        let began = &mut self.began;
+        while let Some((_, map)) = self
+            .maps
+            .next_if(|(due_ns, _)| *due_ns <= log_time_ns || !*began)
+        {
+            *began = true;
+            arrived.take(map, &check);
         }
         arrived
     }
-}
-
-fn grid<'a>(recorded: Recorded) -> Result<Cow<'a, OccupancyGrid>, String> {
-    let (_, map) = recorded.map_err(|error| with_causes(&error))?;
-    let grid = map.to_grid();
-    grid.map(Cow::Owned).map_err(|error| with_causes(&error))
 }
 
 #[derive(Debug, Default)]

@@ -9,8 +9,6 @@ use messages::{Name, ScanHeader};
 use recording::{Kind, Message, Mounted, Recording, RecordingError, Records};
 use ros::{ConversionError, LaserScan, lasers, measurements};
 
-use super::topics::concerns_other;
-
 /// A scan with its context from the recording.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TakenScan {
@@ -48,15 +46,18 @@ impl TakenScan {
 
     /// Converts to a scan of the engine, as seen from above.
     pub fn borrowed(&self) -> Scan<'_> {
-        let message = &self.message;
-        let as_measured = Scan {
-            angle_min: message.angle_min.into(),
-            angle_increment: message.angle_increment.into(),
-            range_min_m: message.range_min,
-            range_max_m: message.range_max,
-            ranges: &message.ranges,
-        };
-        as_measured.seen_from_above(self.upside_down)
+        as_measured(&self.message).seen_from_above(self.upside_down)
+    }
+}
+
+/// Converts to a scan of the engine, as the laser measured it.
+pub fn as_measured(message: &LaserScan) -> Scan<'_> {
+    Scan {
+        angle_min: message.angle_min.into(),
+        angle_increment: message.angle_increment.into(),
+        range_min_m: message.range_min,
+        range_max_m: message.range_max,
+        ranges: &message.ranges,
     }
 }
 
@@ -158,12 +159,10 @@ impl Iterator for Scans<'_> {
 
     fn next(&mut self) -> Option<Self::Item> {
         loop {
+            let is_other = |topic: &str| self.topics.iter().all(|own| **own != *topic);
             let record = match self.records.next()? {
-                Ok(record) if !self.topics.contains(&record.topic) => continue,
-                Err(error) if self.topics.iter().all(|t| concerns_other(&error, t)) => continue,
-                other => other,
-            };
-            let record = match record {
+                Ok(record) if is_other(&record.topic) => continue,
+                Err(error) if error.topic().is_some_and(is_other) => continue,
                 Ok(record) => record,
                 // Reports the error even for a scan that is not selected.
                 Err(error) => {

@@ -109,7 +109,7 @@ impl<'a> Session<'a> {
             maps: Maps::none(),
             prepared: None,
             refusal: String::new(),
-            notes: headings.notes().to_vec(),
+            notes: headings.notes.clone(),
             said: BTreeSet::new(),
             map_file: map_file.unwrap_or(recording.path()).to_owned(),
             engine: options.engine.clone(),
@@ -128,7 +128,7 @@ impl<'a> Session<'a> {
             return Session::open(recording, options, None);
         };
         let mut session = Session::unprepared(recording, options)?;
-        let prior = session.headings.source().prior();
+        let prior = session.headings.source.prior();
         let cache = session.cache.as_ref();
         let prepare = || World::of_set(maps, &options.engine, prior, cache);
         let (prepared, cpu_ms) = cpu::timed(prepare)?;
@@ -194,7 +194,7 @@ impl<'a> Session<'a> {
         if self.prepared.as_ref().is_some_and(|p| p.map_id == map_id) {
             return Ok(Ok(()));
         }
-        let prior = self.headings.source().prior();
+        let prior = self.headings.source.prior();
         let cache = self.cache.as_ref();
         let prepare = || World::prepare_with(&map, &self.engine, prior, cache);
         let (prepared, cpu_ms) = cpu::timed(prepare)?;
@@ -216,7 +216,7 @@ impl<'a> Session<'a> {
     /// Prepares the map of a scan again with all cells within `radius_m` of `centre` unknown.
     pub fn erase(&mut self, scan: &TakenScan, centre: Pose, radius_m: f64) -> anyhow::Result<()> {
         self.turn_to(scan)?;
-        let prior = self.headings.source().prior();
+        let prior = self.headings.source.prior();
         let Some(prepared) = &mut self.prepared else {
             return Ok(());
         };

@@ -59,13 +59,3 @@ impl TopicOptions {
         Ok(topics)
     }
 }
-
-/// True if the error is about a message of a channel other than `topic`.
-pub(super) fn concerns_other(error: &RecordingError, topic: &str) -> bool {
-    match error {
-        RecordingError::Message { topic: of, .. } | RecordingError::NotCdr { topic: of, .. } => {
-            of != topic
-        }
-        _ => false,
-    }
-}
