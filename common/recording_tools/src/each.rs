@@ -1,26 +1,33 @@
-//! Runs an action on several files, some of which may be bad.
+//! Reports on several recordings, some of which may be bad.
 
 use std::path::{Path, PathBuf};
 
-use command_line::OutputError;
+use command_line::{OutputError, stdout};
+use offline::TopicOptions;
 use progress::say;
+use recording::Recording;
 
-/// Runs `act` on each file. If there are several, an error is printed to standard error and the
-/// next file follows. Returns true if any failed.
+/// Opens each recording with these topics, and prints the report on it. If there are several, an
+/// error is printed to standard error and the next one follows. Returns true if any failed.
 ///
 /// # Errors
-/// If the only file failed, or standard output is closed.
+/// If the only recording failed, or standard output is closed.
 pub(crate) fn each(
     paths: &[PathBuf],
-    mut act: impl FnMut(&Path) -> anyhow::Result<()>,
+    topics: &TopicOptions,
+    mut report: impl FnMut(&Path, Recording) -> anyhow::Result<String>,
 ) -> anyhow::Result<bool> {
+    let mut act = |path: &PathBuf| {
+        let mut recording = Recording::open(path)?;
+        topics.apply(&mut recording)?;
+        let text = report(path, recording)?;
+        anyhow::Ok(stdout::print(&text)?)
+    };
     let mut any_failed = false;
     for path in paths {
         match act(path) {
             Ok(()) => {}
-            Err(error) if paths.len() == 1 || error.is::<OutputError>() => {
-                return Err(error);
-            }
+            Err(error) if paths.len() == 1 || error.is::<OutputError>() => return Err(error),
             Err(error) => {
                 say(&format!("{error:#}"));
                 any_failed = true;

@@ -61,64 +61,67 @@ struct Conversion<'a, W: Write + Seek> {
 
 impl<W: Write + Seek> Conversion<'_, W> {
     fn line(&mut self, number: u64, line: &str) -> anyhow::Result<()> {
-        match read::parse(line) {
-            Ok(Line::Laser(laser)) => self.laser(&laser, number)?,
-            Ok(Line::Odometry(odometry)) => self.odometry(&odometry, number)?,
-            Ok(Line::Parameter(_) | Line::Nothing) => {}
-            Ok(Line::Other(name)) => self.report.tally.other(&name),
-            Err(broken) => self.report.tally.broken(number, &broken),
+        let broken = match read::parse(line) {
+            Ok(Line::Laser(laser)) => self.laser(&laser)?,
+            Ok(Line::Odometry(odometry)) => self.odometry(&odometry)?,
+            Ok(Line::Parameter(_) | Line::Nothing) => None,
+            Ok(Line::Other(name)) => {
+                self.report.tally.other(&name);
+                None
+            }
+            Err(broken) => Some(broken),
+        };
+        if let Some(broken) = broken {
+            self.report.tally.broken(number, &broken);
         }
         Ok(())
     }
 
-    fn laser(&mut self, laser: &Laser, number: u64) -> anyhow::Result<()> {
+    /// Writes a scan, or returns what is wrong with its line.
+    fn laser(&mut self, laser: &Laser) -> anyhow::Result<Option<Broken>> {
         let is_source = |source: &&mut Source| source.is_of(laser);
         let Some(source) = self.sources.iter_mut().find(is_source) else {
             self.report.tally.repeated(laser.name());
-            return Ok(());
+            return Ok(None);
         };
-        let Some((ns, stamp)) = moment(laser.time_ns) else {
-            let broken = late(laser.name(), laser.time_ns);
-            self.report.tally.broken(number, &broken);
-            return Ok(());
+        let Some(stamp) = Time::from_ns(laser.time_ns) else {
+            return Ok(Some(late(laser.name(), laser.time_ns)));
         };
         let mounting = self.survey.parameters.of(laser.number);
         let angles = match angles::of(laser, mounting) {
             Ok(angles) => angles,
             Err(reason) => {
-                let broken = Broken {
+                return Ok(Some(Broken {
                     name: laser.name(),
                     fault: Fault::Angles,
                     reason,
-                };
-                self.report.tally.broken(number, &broken);
-                return Ok(());
+                }));
             }
         };
         let message = source.scan(laser, angles, stamp, self.rules.range_max_m);
         let (topic, frame) = (source.topic.clone(), source.frame.clone());
         let missing = laser.ranges.iter().filter(|range| range.is_nan()).count();
         self.report.tally.missing_readings += missing as u64;
-        self.place(laser, (ns, stamp), &topic, &frame)?;
+        self.place(laser, stamp, &topic, &frame)?;
         if let Some(poses) = laser.poses {
-            self.odometry_at(ns, stamp, poses.robot, (0.0, 0.0))?;
+            self.odometry_at(stamp, poses.robot, (0.0, 0.0))?;
         }
         self.report.scans += 1;
-        Ok(self.writer.write(&topic, ns, &Message::Scan(message))?)
+        self.write(&topic, stamp, &Message::Scan(message))?;
+        Ok(None)
     }
 
     /// Writes the true pose of the laser, or its mount.
     fn place(
         &mut self,
         laser: &Laser,
-        (ns, stamp): (i64, Time),
+        stamp: Time,
         topic: &str,
         frame: &str,
     ) -> anyhow::Result<()> {
         let mount = match laser.poses {
             Some(poses) if self.rules.truth && topic == SCAN => {
-                let truth = messages::truth(stamp, poses.laser);
-                return Ok(self.writer.write(GROUND_TRUTH, ns, &truth)?);
+                return self.write(GROUND_TRUTH, stamp, &messages::truth(stamp, poses.laser));
             }
             Some(_) if self.rules.truth => None,
             Some(poses) => Some(poses.robot.inverse().then(poses.laser)),
@@ -127,43 +130,35 @@ impl<W: Write + Seek> Conversion<'_, W> {
                 mounting.base_from_laser(laser.number)
             }
         };
-        match mount {
-            Some(mount) => self.mount(ns, frame, mount, stamp),
-            None => Ok(()),
-        }
+        mount.map_or(Ok(()), |mount| self.mount(frame, mount, stamp))
     }
 
-    fn odometry(&mut self, odometry: &Odometry, number: u64) -> anyhow::Result<()> {
-        match moment(odometry.time_ns) {
-            Some((ns, stamp)) => self.odometry_at(ns, stamp, odometry.robot, odometry.velocities),
-            None => {
-                let broken = late("ODOM".to_owned(), odometry.time_ns);
-                self.report.tally.broken(number, &broken);
-                Ok(())
-            }
-        }
+    /// Writes odometry, or returns what is wrong with its line.
+    fn odometry(&mut self, odometry: &Odometry) -> anyhow::Result<Option<Broken>> {
+        let Some(stamp) = Time::from_ns(odometry.time_ns) else {
+            return Ok(Some(late("ODOM".to_owned(), odometry.time_ns)));
+        };
+        self.odometry_at(stamp, odometry.robot, odometry.velocities)?;
+        Ok(None)
     }
 
     fn odometry_at(
         &mut self,
-        ns: i64,
         stamp: Time,
         robot: geometry::Pose,
         (forward, turn): (f64, f64),
     ) -> anyhow::Result<()> {
-        if !self.odometry_ns.insert(ns) {
+        if !self.odometry_ns.insert(stamp.as_ns()) {
             return Ok(());
         }
         let motion = geometry::Pose::new(forward, 0.0, turn);
         self.report.odometry += 1;
-        let message = messages::odometry(stamp, robot, motion);
-        Ok(self.writer.write(ODOM, ns, &message)?)
+        self.write(ODOM, stamp, &messages::odometry(stamp, robot, motion))
     }
 
     /// Writes the mount of a laser from the first line that has it.
     fn mount(
         &mut self,
-        ns: i64,
         frame: &str,
         base_from_laser: geometry::Pose,
         stamp: Time,
@@ -179,7 +174,11 @@ impl<W: Write + Seek> Conversion<'_, W> {
         let mounts = self.mounts.iter();
         let mounts = mounts.map(|(frame, pose)| (frame.clone(), Transform::from_planar(*pose)));
         let message = messages::mounts(stamp, mounts);
-        Ok(self.writer.write(TF_STATIC, ns, &message)?)
+        self.write(TF_STATIC, stamp, &message)
+    }
+
+    fn write(&mut self, topic: &str, stamp: Time, message: &Message) -> anyhow::Result<()> {
+        Ok(self.writer.write(topic, stamp.as_ns(), message)?)
     }
 }
 
@@ -189,11 +188,6 @@ fn late(name: String, time_ns: i64) -> Broken {
         fault: Fault::Time,
         reason: format!("a recording cannot say a time of {time_ns} ns"),
     }
-}
-
-/// Converts a time, if a recording can represent it.
-fn moment(ns: i64) -> Option<(i64, Time)> {
-    Some((ns, Time::from_ns(ns)?))
 }
 
 #[cfg(test)]
@@ -211,20 +205,20 @@ FLASER 3 1.0 broken
 FLASER 3 2.0 81.83 2.5 1.5 0 0 1 0 0 2.0 h 2.0
 ";
 
-    fn converted(log: &str, rules: &Rules) -> (Recording, Report) {
+    fn converted(truth: bool) -> (Recording, Report) {
+        let rules = Rules {
+            truth,
+            range_max_m: 80.0,
+        };
         let mut writer = RecordingWriter::in_memory(Packing::Zstd).unwrap();
-        let report = convert(|| Ok(log.as_bytes()), rules, &mut writer).unwrap();
+        let report = convert(|| Ok(LOG.as_bytes()), &rules, &mut writer).unwrap();
         let bytes = writer.finish().unwrap().into_inner();
         (Recording::from_bytes("r.mcap", bytes).unwrap(), report)
     }
 
     #[test]
     fn scans_odometry_and_the_mount_are_found() {
-        let rules = Rules {
-            truth: false,
-            range_max_m: 80.0,
-        };
-        let (recording, report) = converted(LOG, &rules);
+        let (recording, report) = converted(false);
         assert_eq!((report.scans, report.odometry), (2, 3));
         assert_eq!((report.tally.broken_lines(), report.moved_mounts), (1, 0));
         assert_eq!(
@@ -241,13 +235,8 @@ FLASER 3 2.0 81.83 2.5 1.5 0 0 1 0 0 2.0 h 2.0
         );
         let mount = recording.base_from_laser("laser").unwrap().unwrap();
         assert_eq!(mount.base_from_laser, geometry::Pose::new(0.5, 0.0, 0.0));
-        let Message::Scan(scan) = recording
-            .records_of(&[Kind::Scan])
-            .next()
-            .unwrap()
-            .unwrap()
-            .message
-        else {
+        let first = recording.records_of(&[Kind::Scan]).next().unwrap();
+        let Message::Scan(scan) = first.unwrap().message else {
             panic!("asked for scans");
         };
         assert_eq!(
@@ -258,11 +247,7 @@ FLASER 3 2.0 81.83 2.5 1.5 0 0 1 0 0 2.0 h 2.0
 
     #[test]
     fn corrected_poses_become_the_truth() {
-        let rules = Rules {
-            truth: true,
-            range_max_m: 80.0,
-        };
-        let (recording, _) = converted(LOG, &rules);
+        let (recording, _) = converted(true);
         let truths = recording.ground_truths().unwrap();
         assert_eq!(truths.len(), 2);
         assert_eq!(truths[&2_000_000_000].pose.x, 1.5);

@@ -36,46 +36,40 @@ pub(super) fn all(
     survey: &Survey,
     given: Option<&OccupancyGrid>,
 ) -> Vec<Finding> {
-    let checks = [
-        damage(recording),
-        survey.channels.iter().filter_map(undecodable).collect(),
-        topics(recording, survey, given.is_some()),
-        map(recording),
-        mount(recording, survey),
-        frames(survey),
-        stamps(survey),
-        survey.of_kind(Kind::Scan).filter_map(gaps).collect(),
-        scans(survey),
-        survey.of_kind(Kind::Scan).filter_map(durations).collect(),
-        survey.of_kind(Kind::Scan).filter_map(units).collect(),
-        survey.channels.iter().filter_map(mended).collect(),
-        truths(recording, survey),
-        order(recording),
-        Drive::of(recording).map_or_else(Vec::new, |drive| sensors::all(&drive)),
-    ];
-    let on_map = Located::of(recording, given).map_or_else(
-        |_| Vec::new(),
-        |located| {
-            let delay = odometry_delay(recording, survey, &located);
-            delay.into_iter().chain(map_fit::all(&located)).collect()
-        },
-    );
-    let mut all: Vec<Finding> = checks.into_iter().flatten().chain(on_map).collect();
+    let mut all = Vec::from_iter(damage(recording));
+    all.extend(survey.channels.iter().filter_map(undecodable));
+    all.extend(topics(recording, survey, given.is_some()));
+    all.extend(map(recording));
+    all.extend(mount(recording, survey));
+    all.extend(frames(survey));
+    all.extend(stamps(survey));
+    all.extend(survey.of_kind(Kind::Scan).filter_map(gaps));
+    all.extend(scans(survey));
+    all.extend(survey.of_kind(Kind::Scan).filter_map(durations));
+    all.extend(survey.of_kind(Kind::Scan).filter_map(units));
+    all.extend(survey.channels.iter().filter_map(mended));
+    all.extend(truths(recording, survey));
+    all.extend(order(recording));
+    all.extend(Drive::of(recording).iter().flat_map(sensors::all));
+    if let Ok(located) = Located::of(recording, given) {
+        all.extend(odometry_delay(recording, survey, &located));
+        all.extend(map_fit::first(&located));
+    }
     all.sort_by_key(|finding| std::cmp::Reverse(finding.severity));
     all
 }
 
-fn damage(recording: &Recording) -> Vec<Finding> {
-    let damage = recording.damage().map(|damage| {
-        let messages = recording.messages();
-        let found = format!("{damage}; {messages} messages before that are readable");
-        Finding::lost(match (recording.file_count(), recording.damage_error()) {
+fn damage(recording: &Recording) -> Option<Finding> {
+    let damage = recording.damage()?;
+    let messages = recording.messages();
+    let found = format!("{damage}; {messages} messages before that are readable");
+    Some(Finding::lost(
+        match (recording.file_count(), recording.damage_error()) {
             (1, _) | (_, None) => found,
             // If there are several files, the error names the damaged one.
             (_, Some(error)) => error.to_string(),
-        })
-    });
-    damage.into_iter().collect()
+        },
+    ))
 }
 
 fn undecodable((topic, seen): (&String, &Seen)) -> Option<Finding> {
@@ -106,10 +100,9 @@ fn topics(recording: &Recording, survey: &Survey, has_map: bool) -> Vec<Finding>
 }
 
 fn map(recording: &Recording) -> Vec<Finding> {
-    let maps = match recording.maps() {
-        Ok(maps) => maps,
+    let Ok(maps) = recording.maps() else {
         // The check of topics reports it.
-        Err(_) => return Vec::new(),
+        return Vec::new();
     };
     let (mut seen, mut refused, mut newest) = (0, Vec::new(), None);
     // Maps that do not decode are reported with the other messages.
@@ -153,10 +146,7 @@ fn misnamed(recording: &Recording, grid: &OccupancyGrid, maps: u64) -> Option<Fi
 }
 
 fn mount(recording: &Recording, survey: &Survey) -> Vec<Finding> {
-    let lasers: BTreeSet<&String> = survey
-        .of_kind(Kind::Scan)
-        .flat_map(|(_, seen)| &seen.frames)
-        .collect();
+    let lasers: BTreeSet<&String> = survey.frames(Kind::Scan).collect();
     let (mut found, mut said) = (Vec::new(), BTreeSet::new());
     for laser in lasers {
         match recording.mounted(laser) {
@@ -194,25 +184,18 @@ fn far_mount(laser: &str, mount: &Mount) -> Option<Finding> {
 fn frames(survey: &Survey) -> Vec<Finding> {
     let mut found = Vec::new();
     for (topic, seen) in &survey.channels {
-        if seen
-            .frames
-            .iter()
-            .chain(&seen.children)
-            .any(String::is_empty)
-        {
-            found.push(Finding::problem(format!(
-                "{topic}: a message names no frame"
-            )));
+        let mut named = seen.frames.iter().chain(&seen.children);
+        if named.any(String::is_empty) {
+            let text = format!("{topic}: a message names no frame");
+            found.push(Finding::problem(text));
         }
         if seen.frames.len() > 1 && seen.kind != Some(Kind::StaticTransforms) {
-            let frames: Vec<&str> = seen.frames.iter().map(String::as_str).collect();
-            let frames = frames.join(", ");
-            found.push(Finding::problem(format!(
-                "{topic}: several frames, {frames}"
-            )));
+            let frames = Vec::from_iter(seen.frames.iter().cloned()).join(", ");
+            let text = format!("{topic}: several frames, {frames}");
+            found.push(Finding::problem(text));
         }
     }
-    let maps = survey.of_kind(Kind::Map).flat_map(|(_, seen)| &seen.frames);
+    let maps = survey.frames(Kind::Map);
     let maps: BTreeSet<&String> = maps.filter(|frame| !frame.is_empty()).collect();
     if let Some(truths) = survey.channels.get(GROUND_TRUTH)
         && let Some(other) = truths.frames.iter().find(|frame| !maps.contains(frame))
@@ -222,12 +205,10 @@ fn frames(survey: &Survey) -> Vec<Finding> {
             "{GROUND_TRUTH} is in frame {other:?}, the map in {map:?}"
         )));
     }
-    let lasers = survey
-        .of_kind(Kind::Scan)
-        .flat_map(|(_, seen)| &seen.frames);
-    let known = survey.of_kind(Kind::StaticTransforms);
-    let known = known.flat_map(|(_, seen)| seen.frames.iter().chain(&seen.children));
-    let known: BTreeSet<&String> = known.chain(lasers).collect();
+    let fixed = survey.of_kind(Kind::StaticTransforms);
+    let mut known: BTreeSet<&String> = fixed.flat_map(|(_, seen)| &seen.children).collect();
+    known.extend(survey.frames(Kind::StaticTransforms));
+    known.extend(survey.frames(Kind::Scan));
     for (topic, seen) in survey.of_kind(Kind::Odometry) {
         if let Some(child) = seen.children.iter().find(|child| !known.contains(child)) {
             found.push(Finding::note(format!(
@@ -247,15 +228,13 @@ fn stamps(survey: &Survey) -> Vec<Finding> {
         };
         let back = count(|before, after| after < before);
         if back > 0 {
-            found.push(Finding::problem(format!(
-                "{topic}: stamps go back {back} times"
-            )));
+            let text = format!("{topic}: stamps go back {back} times");
+            found.push(Finding::problem(text));
         }
         let same = count(|before, after| after == before);
         if same > 0 && seen.kind == Some(Kind::Scan) {
-            found.push(Finding::problem(format!(
-                "{topic}: {same} scans have the stamp before"
-            )));
+            let text = format!("{topic}: {same} scans have the stamp before");
+            found.push(Finding::problem(text));
         }
     }
     found
@@ -350,29 +329,29 @@ fn mended((topic, seen): (&String, &Seen)) -> Option<Finding> {
     )))
 }
 
-fn truths(recording: &Recording, survey: &Survey) -> Vec<Finding> {
+fn truths(recording: &Recording, survey: &Survey) -> Option<Finding> {
     let truths = match recording.ground_truths() {
         Ok(truths) => truths,
-        Err(error) => return vec![Finding::problem(with_causes(&error))],
+        Err(error) => return Some(Finding::problem(with_causes(&error))),
     };
     let scans = survey
         .of_kind(Kind::Scan)
         .flat_map(|(_, seen)| &seen.stamps_ns);
     let scans: BTreeSet<&i64> = scans.collect();
-    match truths.keys().filter(|stamp| !scans.contains(stamp)).count() {
-        0 => Vec::new(),
-        orphans => vec![Finding::note(format!(
-            "{orphans} of {} true poses have the stamp of no scan",
-            truths.len()
-        ))],
-    }
+    let orphans = truths.keys().filter(|stamp| !scans.contains(stamp)).count();
+    (orphans > 0).then(|| {
+        let all = truths.len();
+        Finding::note(format!(
+            "{orphans} of {all} true poses have the stamp of no scan"
+        ))
+    })
 }
 
-fn order(recording: &Recording) -> Vec<Finding> {
-    match recording.unsorted() {
-        0 => Vec::new(),
-        unsorted => vec![Finding::note(format!(
+fn order(recording: &Recording) -> Option<Finding> {
+    let unsorted = recording.unsorted();
+    (unsorted > 0).then(|| {
+        Finding::note(format!(
             "{unsorted} messages stand in the file behind later ones; readers sort them"
-        ))],
-    }
+        ))
+    })
 }

@@ -4,9 +4,8 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::Duration;
 
-use command_line::{LOST_DATA, stdout};
+use command_line::LOST_DATA;
 use offline::TopicOptions;
-use recording::Recording;
 use schemars::JsonSchema;
 use serde::Serialize;
 
@@ -95,15 +94,10 @@ fn examine(config: &Config, recordings: &[PathBuf], known: &[Finding]) -> anyhow
     });
     let map = map.transpose()?.flatten();
     let mut worst = Severity::Note;
-    let any_failed = each(recordings, |path| {
-        let mut recording = Recording::open(path)?;
-        config.topics.apply(&mut recording)?;
+    let any_failed = each(recordings, &config.topics, |path, mut recording| {
+        let survey = Survey::of(&recording);
         let mut findings = known.to_vec();
-        findings.extend(checks::all(
-            &recording,
-            &Survey::of(&recording),
-            map.as_ref(),
-        ));
+        findings.extend(checks::all(&recording, &survey, map.as_ref()));
         // Errors are found by the other checks.
         let band = bands::compare(&mut recording, &config.topics.cloud, map.as_ref());
         findings.extend(band.ok().flatten());
@@ -116,11 +110,10 @@ fn examine(config: &Config, recordings: &[PathBuf], known: &[Finding]) -> anyhow
             },
             findings,
         };
-        stdout::print(&match config.json {
+        Ok(match config.json {
             true => json::object(&report) + "\n",
             false => text(&report),
-        })?;
-        Ok(())
+        })
     })?;
     Ok(match worst {
         _ if any_failed => ExitCode::FAILURE,

@@ -19,25 +19,21 @@ pub(super) fn odometry_delay(
     recording: &Recording,
     survey: &Survey,
     located: &Located,
-) -> Vec<Finding> {
+) -> Option<Finding> {
     let scans = survey.of_kind(Kind::Scan).map(|(_, seen)| seen);
     let usual_period_s = scans
         .filter_map(Seen::usual_step_s)
         .fold(WORTH_A_NOTE_S, f64::max);
-    let found = estimate(recording, located, usual_period_s).ok().flatten();
-    let note = found.map(|delay_s| {
-        let way = if delay_s > 0.0 {
-            "leads"
-        } else {
-            "lags behind"
-        };
-        Finding::note(format!(
-            "odometry {way} the laser by about {:.2} s: --odometry-delay-s={delay_s:.2} makes up \
-             for it",
-            delay_s.abs()
-        ))
-    });
-    note.into_iter().collect()
+    // Other checks report a recording that cannot be read.
+    let delay_s = estimate(recording, located, usual_period_s).ok()??;
+    let way = match delay_s > 0.0 {
+        true => "leads",
+        false => "lags behind",
+    };
+    Some(Finding::note(format!(
+        "odometry {way} the laser by about {:.2} s: --odometry-delay-s={delay_s:.2} makes up for it",
+        delay_s.abs()
+    )))
 }
 
 /// Estimates the time to add to the odometry's stamps, in seconds; `None` if the scans do not show

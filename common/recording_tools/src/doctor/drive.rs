@@ -7,10 +7,8 @@ use engine::scan::Scan;
 use engine::space::Space;
 use engine::tracking::{ScanMatcher, TrackingConfig};
 use geometry::Pose;
-use offline::each_odometry;
+use offline::{as_measured, each_odometry};
 use recording::{Kind, Message, Recording};
-
-use super::survey::as_taken;
 
 /// Largest number of scans that are matched: minutes of a laser of 10 Hz, seconds of computing.
 const MAX_MATCHED: usize = 2000;
@@ -117,10 +115,8 @@ impl Drive {
                 })
             });
             drive.child_from_laser = child_from_laser;
-            drive.add_scan(
-                scan.header.stamp.as_ns(),
-                as_taken(scan).seen_from_above(is_upside_down),
-            );
+            let seen = as_measured(scan).seen_from_above(is_upside_down);
+            drive.add_scan(scan.header.stamp.as_ns(), seen);
         }
         Some(drive)
     }

@@ -24,10 +24,9 @@ const NOWHERE_FIT: f64 = 0.7;
 const NOWHERE_SPREAD: f64 = 0.1;
 
 /// Returns the first finding, without its consequences.
-pub(super) fn all(located: &Located) -> Vec<Finding> {
+pub(super) fn first(located: &Located) -> Option<Finding> {
     let checks = [elsewhere, scale, base_in_wall];
-    let found = checks.into_iter().find_map(|check| check(located));
-    found.into_iter().collect()
+    checks.into_iter().find_map(|check| check(located))
 }
 
 /// Mean score of scans at each of [`SCALES`]; `None` if there are too few scans.

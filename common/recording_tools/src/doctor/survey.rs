@@ -2,8 +2,8 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use engine::scan::Scan;
-use recording::{Kind, Message, Record, Recording, RecordingError};
+use offline::as_measured;
+use recording::{Kind, Message, Record, Recording};
 use ros::{Header, LaserScan, Mend, Quaternion, TfMessage};
 
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -70,16 +70,13 @@ impl Survey {
         for record in recording.records() {
             match record {
                 Ok(record) => survey.see(&record),
-                Err(
-                    ref error @ (RecordingError::Message { ref topic, .. }
-                    | RecordingError::NotCdr { ref topic, .. }),
-                ) => {
-                    let seen = survey.channels.entry(topic.clone()).or_default();
+                Err(error) => {
+                    // The damage is reported by the recording itself.
+                    let Some(topic) = error.topic() else { continue };
+                    let seen = survey.channels.entry(topic.to_owned()).or_default();
                     seen.undecodable += 1;
                     seen.first_reason.get_or_insert_with(|| error.to_string());
                 }
-                // The damage is reported by the recording itself.
-                Err(_) => {}
             }
         }
         survey
@@ -88,6 +85,11 @@ impl Survey {
     pub(super) fn of_kind(&self, kind: Kind) -> impl Iterator<Item = (&String, &Seen)> {
         let is_meant = move |(_, seen): &(&String, &Seen)| seen.kind == Some(kind);
         self.channels.iter().filter(is_meant)
+    }
+
+    /// Frames of the headers of all messages of a kind.
+    pub(super) fn frames(&self, kind: Kind) -> impl Iterator<Item = &String> {
+        self.of_kind(kind).flat_map(|(_, seen)| &seen.frames)
     }
 
     fn see(&mut self, record: &Record) {
@@ -152,7 +154,7 @@ impl Seen {
 
     fn scan(&mut self, scan: &LaserScan) {
         self.header(&scan.header);
-        let taken = as_taken(scan);
+        let taken = as_measured(scan);
         let beams = 0..scan.ranges.len();
         let silent = beams.filter(|&beam| taken.reading(beam).is_none());
         self.silent += silent.count() as u64;
@@ -206,20 +208,9 @@ fn middle(ranges: &[f32]) -> Option<f32> {
     (read.len() >= MIN_READINGS).then_some(middle)
 }
 
-/// Converts to a scan of the engine, as measured.
-pub(super) fn as_taken(scan: &LaserScan) -> Scan<'_> {
-    Scan {
-        angle_min: scan.angle_min.into(),
-        angle_increment: scan.angle_increment.into(),
-        range_min_m: scan.range_min,
-        range_max_m: scan.range_max,
-        ranges: &scan.ranges,
-    }
-}
-
 /// Reason why the engine rejects a scan, or a contradiction between its values.
 fn oddity(scan: &LaserScan) -> Option<String> {
-    if let Err(refusal) = as_taken(scan).check() {
+    if let Err(refusal) = as_measured(scan).check() {
         return Some(refusal.to_string());
     }
     let LaserScan {

@@ -3,9 +3,8 @@
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-use command_line::{LOST_DATA, stdout};
+use command_line::LOST_DATA;
 use offline::TopicOptions;
-use recording::Recording;
 
 use super::contents::Contents;
 use super::text;
@@ -29,18 +28,15 @@ pub struct Config {
 /// Describes the given recordings one after another; a damaged one up to its damage.
 pub fn run(config: &Config) -> anyhow::Result<ExitCode> {
     let mut code = ExitCode::SUCCESS;
-    let any_failed = each(&config.recordings, |path| {
-        let mut recording = Recording::open(path)?;
-        config.topics.apply(&mut recording)?;
+    let any_failed = each(&config.recordings, &config.topics, |_, recording| {
         let contents = Contents::of(&recording);
         if contents.damage.is_some() {
             code = ExitCode::from(LOST_DATA);
         }
-        stdout::print(&match config.json {
-            true => contents.json(),
+        Ok(match config.json {
+            true => json::object(&contents) + "\n",
             false => text::of(&contents),
-        })?;
-        Ok(())
+        })
     })?;
     Ok(match any_failed {
         true => ExitCode::FAILURE,

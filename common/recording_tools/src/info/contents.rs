@@ -74,10 +74,6 @@ impl Contents {
             damage: damage(recording),
         }
     }
-
-    pub(crate) fn json(&self) -> String {
-        json::object(self) + "\n"
-    }
 }
 
 const TAKEN: [(&str, Kind); 3] = [
