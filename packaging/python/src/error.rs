@@ -21,7 +21,7 @@ pub(crate) fn value(text: impl Into<String>) -> PyErr {
 }
 
 /// Converts an error of the engine about a map or a scan.
-pub(crate) fn of_engine(error: &EngineError) -> PyErr {
+pub(crate) fn of_engine(error: EngineError) -> PyErr {
     match error {
         // The command's options have other names here.
         EngineError::Memory {
@@ -32,7 +32,7 @@ pub(crate) fn of_engine(error: &EngineError) -> PyErr {
              larger cells (search_cell), fewer headings (headings) or a part of the map (region) \
              take less"
         )),
-        other => value(with_causes(other)),
+        other => value(with_causes(&other)),
     }
 }
 

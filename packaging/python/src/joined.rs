@@ -14,7 +14,7 @@ pub(crate) type Poses = Vec<(i64, Pose)>;
 /// Joins scans at the time of the first. Of several lasers the pose of the base is searched, of one
 /// that of the laser.
 pub(crate) fn join(scans: &[TimedScan<'_>], odometry: &Poses) -> PyResult<Joiner> {
-    TimedScan::check_all(scans).map_err(|error| of_engine(&error))?;
+    TimedScan::check_all(scans).map_err(of_engine)?;
     let config = JoinConfig::of_lasers(scans.len(), MotionConfig::default());
     let mut joiner = Joiner::keeping_all(config);
     for &(stamp_ns, odom_from_base) in odometry {
@@ -23,7 +23,7 @@ pub(crate) fn join(scans: &[TimedScan<'_>], odometry: &Poses) -> PyResult<Joiner
     for (laser, scan) in scans.iter().enumerate() {
         joiner.add_scan(laser, scan);
     }
-    let brought = joiner.bring().map_err(|error| of_engine(&error))?;
+    let brought = joiner.bring().map_err(of_engine)?;
     match brought.left_out.first() {
         Some((laser, reason)) => Err(value(format!("laser {laser}: {reason}"))),
         None => Ok(joiner),

@@ -4,12 +4,20 @@ use pyo3::exceptions::PyKeyError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
+use crate::numbers::PoseTuple;
+
 /// A callable that restores an object, and its arguments.
 pub(crate) type Reduced<'py> = (Bound<'py, PyAny>, (Bound<'py, PyDict>,));
 
-/// Defines the methods that all results have, from the names of the fields. Other methods follow.
+/// Defines a class of results, with the methods that all have.
 macro_rules! by_fields {
-    ($class:ident { $($field:ident),+ $(,)? } $($other:tt)*) => {
+    (
+        $(#[$($of_class:tt)+])*
+        struct $class:ident { $($(#[$($of_field:tt)+])* $field:ident: $type:ty,)+ }
+    ) => {
+        $(#[$($of_class)+])*
+        pub(crate) struct $class { $($(#[$($of_field)+])* $field: $type,)+ }
+
         impl $class {
             const FIELDS: &[&str] = &[$(stringify!($field)),+];
         }
@@ -35,7 +43,9 @@ macro_rules! by_fields {
                 Ok($class { $($field: kept::field(fields, stringify!($field))?.extract()?),+ })
             }
 
-            $($other)*
+            fn __repr__(&self) -> String {
+                self.shown()
+            }
         }
     };
 }
@@ -48,6 +58,14 @@ pub(crate) fn reduce<'py>(object: &Bound<'py, PyAny>, names: &[&str]) -> PyResul
         fields.set_item(name, object.getattr(name)?)?;
     }
     Ok((object.get_type().getattr("_restore")?, (fields,)))
+}
+
+/// Shows a result: its class with a verdict, the pose if there is one, and the reason.
+pub(crate) fn shown(what: &str, frame: &str, pose: Option<PoseTuple>, why: &str) -> String {
+    let place = pose.map_or(String::new(), |(x, y, yaw)| {
+        format!("{frame} at x {x:.3} m, y {y:.3} m, yaw {yaw:.4} rad; ")
+    });
+    format!("<backcast.{what}: {place}{why}>")
 }
 
 pub(crate) fn field<'py>(fields: &Bound<'py, PyDict>, name: &str) -> PyResult<Bound<'py, PyAny>> {

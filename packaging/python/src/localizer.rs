@@ -28,8 +28,12 @@ use crate::settings::EngineSettings;
 /// background.
 #[pyclass(frozen, module = "backcast")]
 pub(crate) struct Localizer {
+    /// The map.
+    #[pyo3(get)]
     map: Py<Map>,
     search: Search,
+    /// True if each scan comes with its heading.
+    #[pyo3(get)]
     heading_known: bool,
 }
 
@@ -103,9 +107,19 @@ impl Localizer {
         let has_angles = angle_min.or(angle_increment).is_some();
         let has_others = has_angles || is_mounted || range_min != 0.0 || range_max.is_some();
         let scans = scan::scans_of(ranges, has_others, || {
-            let angles = angles.ok_or_else(|| scan::missing("angle_min or angle_increment"))?;
-            let limits = (range_min, range_max);
-            GivenScan::new(ranges, angles, limits, (mount, upside_down), (0, 0.0))
+            let missing = || scan::missing("angle_min or angle_increment");
+            let (start, step) = angles.ok_or_else(missing)?;
+            GivenScan::new(
+                ranges,
+                start,
+                step,
+                range_min,
+                range_max,
+                mount,
+                upside_down,
+                0,
+                0.0,
+            )
         })?;
         let scans: Vec<TimedScan<'_>> = scans.iter().map(|scan| scan.get().timed()).collect();
         let heading = self.of_laser(heading, &scans[0])?;
@@ -119,18 +133,6 @@ impl Localizer {
             self.search.locate(seen.observation(), heading, read)
         })?;
         found.read(py, base_from_laser)
-    }
-
-    /// The map.
-    #[getter]
-    fn map(&self, py: Python<'_>) -> Py<Map> {
-        self.map.clone_ref(py)
-    }
-
-    /// True if each scan comes with its heading.
-    #[getter]
-    fn heading_known(&self) -> bool {
-        self.heading_known
     }
 
     /// Size of the search index in bytes, in addition to the map's cells.

@@ -50,7 +50,11 @@ impl Recording {
 /// The scans of one laser, in the order of their recording; scans[i] is a Scan.
 #[pyclass(frozen, module = "backcast")]
 pub(crate) struct LaserScans {
+    /// Topic of the scans.
+    #[pyo3(get)]
     topic: String,
+    /// Name of the laser's frame.
+    #[pyo3(get)]
     frame: String,
     mount: Option<Mount>,
     messages: Vec<LaserScan>,
@@ -58,18 +62,6 @@ pub(crate) struct LaserScans {
 
 #[pymethods]
 impl LaserScans {
-    /// Topic of the scans.
-    #[getter]
-    fn topic(&self) -> &str {
-        &self.topic
-    }
-
-    /// Name of the laser's frame.
-    #[getter]
-    fn frame(&self) -> &str {
-        &self.frame
-    }
-
     /// Pose of the laser on the robot, (x, y, yaw) in the base's frame, metres and radians;
     /// None if the recording does not say it.
     #[getter]
@@ -249,14 +241,10 @@ impl Contents {
             match record.message {
                 Message::Scan(scan) => contents.take(&recording, &record.topic, scan)?,
                 Message::Odometry(message) if Some(&record.topic) == odom_topic.as_ref() => {
-                    let pose = message.pose.pose.planar().map_err(|source| {
-                        failed(RecordingError::Unusable {
-                            path: path.to_owned(),
-                            topic: record.topic.to_string(),
-                            log_time_ns: record.log_time_ns,
-                            source,
-                        })
-                    })?;
+                    let unusable =
+                        |source| recording.unusable(&record.topic, record.log_time_ns, source);
+                    let pose = message.pose.pose.planar().map_err(unusable);
+                    let pose = pose.map_err(failed)?;
                     contents.odometry.push((message.header.stamp.as_ns(), pose));
                 }
                 _ => {}

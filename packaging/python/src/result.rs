@@ -10,45 +10,47 @@ use pyo3::types::PyDict;
 use crate::kept::{self, by_fields};
 use crate::numbers::{self, PoseTuple, covariances, matrix, poses};
 
-/// Places at which a scan may have been taken, best first, with a verdict.
-#[pyclass(frozen, get_all, module = "backcast", name = "Result")]
-pub(crate) struct LocateResult {
-    /// Verdict on the places: "Unique", one place fits and no other comes near it;
-    /// "Ambiguous", several fit about as well; "PoorFit", even the best fits badly, perhaps
-    /// because it is another map; "NoScan", the scan has no usable information.
-    verdict: String,
-    /// Explanation of the verdict.
-    why: String,
-    /// Probability of the best place, 0 to 1.
-    confidence: f64,
-    /// Number of other places that fit about as well as the best.
-    alternatives: u32,
-    /// Frame of the poses: "base" if a mount was given, otherwise "laser".
-    frame: String,
-    /// Pose of the best place, (x, y, yaw) in the map, metres and radians; None if there is
-    /// no place. It is the base's pose if a mount was given, otherwise the laser's.
-    pose: Option<PoseTuple>,
-    /// Covariance of pose, 3 × 3 over x, y and yaw in m², m·rad and rad²; None if there is
-    /// no place.
-    covariance: Option<Py<PyArray2<f64>>>,
-    /// N × 3: x, y and yaw of each place in the map, metres and radians, best first; of the
-    /// base if a mount was given, otherwise of the laser.
-    poses: Py<PyArray2<f64>>,
-    /// N × 3 × 3: covariance of each pose, over x, y and yaw in m², m·rad and rad².
-    covariances: Py<PyArray3<f64>>,
-    /// N: probability of each place, 0 to 1. The remainder to 1 is the probability that the
-    /// robot is at none of them.
-    probabilities: Py<PyArray1<f64>>,
-    /// N: score of each place, at most 1: how well the scan fits the map there.
-    scores: Py<PyArray1<f64>>,
-    /// N: votes of the best pose that led to each place.
-    votes: Py<PyArray1<u16>>,
-    /// N × 3: poses, always of the laser.
-    laser_poses: Py<PyArray2<f64>>,
-    /// N × 3 × 3: covariances, always of the laser.
-    laser_covariances: Py<PyArray3<f64>>,
-    /// Number of beams that voted.
-    beams_used: u32,
+by_fields! {
+    /// Places at which a scan may have been taken, best first, with a verdict.
+    #[pyclass(frozen, get_all, module = "backcast", name = "Result")]
+    struct LocateResult {
+        /// Verdict on the places: "Unique", one place fits and no other comes near it;
+        /// "Ambiguous", several fit about as well; "PoorFit", even the best fits badly, perhaps
+        /// because it is another map; "NoScan", the scan has no usable information.
+        verdict: String,
+        /// Explanation of the verdict.
+        why: String,
+        /// Probability of the best place, 0 to 1.
+        confidence: f64,
+        /// Number of other places that fit about as well as the best.
+        alternatives: u32,
+        /// Frame of the poses: "base" if a mount was given, otherwise "laser".
+        frame: String,
+        /// Pose of the best place, (x, y, yaw) in the map, metres and radians; None if there is
+        /// no place. It is the base's pose if a mount was given, otherwise the laser's.
+        pose: Option<PoseTuple>,
+        /// Covariance of pose, 3 × 3 over x, y and yaw in m², m·rad and rad²; None if there is
+        /// no place.
+        covariance: Option<Py<PyArray2<f64>>>,
+        /// N × 3: x, y and yaw of each place in the map, metres and radians, best first; of the
+        /// base if a mount was given, otherwise of the laser.
+        poses: Py<PyArray2<f64>>,
+        /// N × 3 × 3: covariance of each pose, over x, y and yaw in m², m·rad and rad².
+        covariances: Py<PyArray3<f64>>,
+        /// N: probability of each place, 0 to 1. The remainder to 1 is the probability that the
+        /// robot is at none of them.
+        probabilities: Py<PyArray1<f64>>,
+        /// N: score of each place, at most 1: how well the scan fits the map there.
+        scores: Py<PyArray1<f64>>,
+        /// N: votes of the best pose that led to each place.
+        votes: Py<PyArray1<u16>>,
+        /// N × 3: poses, always of the laser.
+        laser_poses: Py<PyArray2<f64>>,
+        /// N × 3 × 3: covariances, always of the laser.
+        laser_covariances: Py<PyArray3<f64>>,
+        /// Number of beams that voted.
+        beams_used: u32,
+    }
 }
 
 /// Data of a result, before Python's lock is taken.
@@ -127,32 +129,9 @@ impl Found {
     }
 }
 
-by_fields! {
-    LocateResult {
-        verdict,
-        why,
-        confidence,
-        alternatives,
-        frame,
-        pose,
-        covariance,
-        poses,
-        covariances,
-        probabilities,
-        scores,
-        votes,
-        laser_poses,
-        laser_covariances,
-        beams_used,
-    }
-
-    fn __repr__(&self) -> String {
-        match self.pose {
-            Some((x, y, yaw)) => format!(
-                "<backcast.Result {}: {} at x {x:.3} m, y {y:.3} m, yaw {yaw:.4} rad; {}>",
-                self.verdict, self.frame, self.why
-            ),
-            None => format!("<backcast.Result {}: {}>", self.verdict, self.why),
-        }
+impl LocateResult {
+    fn shown(&self) -> String {
+        let what = format!("Result {}", self.verdict);
+        kept::shown(&what, &self.frame, self.pose, &self.why)
     }
 }

@@ -27,17 +27,28 @@ use crate::numbers::{self, PoseTuple};
 #[derive(Debug)]
 pub(crate) struct GivenScan {
     ranges: Vec<f32>,
-    /// Bearing of the first range, in the laser's own frame, radians.
-    pub(crate) angle_min: f64,
-    pub(crate) angle_increment: f64,
-    pub(crate) range_min_m: f32,
-    pub(crate) range_max_m: f32,
-    /// Pose of the laser on the base, if it is given.
-    pub(crate) base_from_laser: Option<Pose>,
-    pub(crate) upside_down: bool,
-    pub(crate) stamp_ns: i64,
-    /// Seconds.
-    pub(crate) time_increment: f64,
+    /// Bearing of the first range, radians.
+    #[pyo3(get)]
+    angle_min: f64,
+    /// Angle from one range to the next, radians.
+    #[pyo3(get)]
+    angle_increment: f64,
+    /// Smallest range, metres.
+    #[pyo3(get, name = "range_min")]
+    range_min_m: f32,
+    /// Range from which readings are no returns, metres; infinite for no limit.
+    #[pyo3(get, name = "range_max")]
+    range_max_m: f32,
+    base_from_laser: Option<Pose>,
+    /// True if the laser is mounted upside down.
+    #[pyo3(get)]
+    upside_down: bool,
+    /// Time of the first range, nanoseconds.
+    #[pyo3(get)]
+    stamp_ns: i64,
+    /// Time from one range to the next, seconds.
+    #[pyo3(get)]
+    time_increment: f64,
 }
 
 #[pymethods]
@@ -48,7 +59,7 @@ impl GivenScan {
         upside_down=false, stamp_ns=0, time_increment=0.0
     ))]
     #[allow(clippy::too_many_arguments)]
-    fn of(
+    pub(crate) fn new(
         ranges: &Bound<'_, PyAny>,
         angle_min: f64,
         angle_increment: f64,
@@ -58,95 +69,6 @@ impl GivenScan {
         upside_down: bool,
         stamp_ns: i64,
         time_increment: f64,
-    ) -> PyResult<Self> {
-        GivenScan::new(
-            ranges,
-            (angle_min, angle_increment),
-            (range_min, range_max),
-            (mount, upside_down),
-            (stamp_ns, time_increment),
-        )
-    }
-
-    /// A copy of the ranges, metres, (beams,) of float32, in the order in which they were
-    /// measured.
-    #[getter(ranges)]
-    fn copied_ranges<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f32>> {
-        PyArray1::from_slice(py, &self.ranges)
-    }
-
-    /// Bearing of the first range, radians.
-    #[getter]
-    fn angle_min(&self) -> f64 {
-        self.angle_min
-    }
-
-    /// Angle from one range to the next, radians.
-    #[getter]
-    fn angle_increment(&self) -> f64 {
-        self.angle_increment
-    }
-
-    /// Smallest range, metres.
-    #[getter]
-    fn range_min(&self) -> f64 {
-        self.range_min_m.into()
-    }
-
-    /// Range from which readings are no returns, metres; infinite for no limit.
-    #[getter]
-    fn range_max(&self) -> f64 {
-        self.range_max_m.into()
-    }
-
-    /// Pose of the laser on the robot, (x, y, yaw) in the base's frame, metres and radians;
-    /// None if it is not known.
-    #[getter]
-    fn mount(&self) -> Option<PoseTuple> {
-        self.base_from_laser.map(numbers::tuple)
-    }
-
-    /// True if the laser is mounted upside down.
-    #[getter]
-    fn upside_down(&self) -> bool {
-        self.upside_down
-    }
-
-    /// Time of the first range, nanoseconds.
-    #[getter]
-    fn stamp_ns(&self) -> i64 {
-        self.stamp_ns
-    }
-
-    /// Time from one range to the next, seconds.
-    #[getter]
-    fn time_increment(&self) -> f64 {
-        self.time_increment
-    }
-
-    fn __repr__(&self) -> String {
-        let (ranges, stamp_ns) = (self.ranges.len(), self.stamp_ns);
-        format!("<backcast.Scan of {ranges} ranges at {stamp_ns} ns>")
-    }
-}
-
-/// Bearing of the first range and step to the next, radians.
-pub(crate) type Angles = (f64, f64);
-
-/// Smallest and largest range, metres.
-pub(crate) type Limits = (f64, Option<f64>);
-
-/// Time of the first range in nanoseconds, and seconds from one to the next.
-pub(crate) type Times = (i64, f64);
-
-impl GivenScan {
-    /// Checks the values from Python.
-    pub(crate) fn new(
-        ranges: &Bound<'_, PyAny>,
-        (angle_min, angle_increment): Angles,
-        (range_min, range_max): Limits,
-        (mount, upside_down): (Option<&Bound<'_, PyAny>>, bool),
-        (stamp_ns, time_increment): Times,
     ) -> PyResult<Self> {
         let scan = GivenScan {
             ranges: metres(ranges)?,
@@ -162,6 +84,27 @@ impl GivenScan {
         scan.checked()
     }
 
+    /// A copy of the ranges, metres, (beams,) of float32, in the order in which they were
+    /// measured.
+    #[getter(ranges)]
+    fn copied_ranges<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f32>> {
+        PyArray1::from_slice(py, &self.ranges)
+    }
+
+    /// Pose of the laser on the robot, (x, y, yaw) in the base's frame, metres and radians;
+    /// None if it is not known.
+    #[getter]
+    fn mount(&self) -> Option<PoseTuple> {
+        self.base_from_laser.map(numbers::tuple)
+    }
+
+    fn __repr__(&self) -> String {
+        let (ranges, stamp_ns) = (self.ranges.len(), self.stamp_ns);
+        format!("<backcast.Scan of {ranges} ranges at {stamp_ns} ns>")
+    }
+}
+
+impl GivenScan {
     /// Takes a scan of a recording, and the mount of its laser.
     pub(crate) fn recorded(message: &LaserScan, mount: Option<&Mount>) -> PyResult<Self> {
         let scan = GivenScan {
@@ -179,7 +122,7 @@ impl GivenScan {
     }
 
     fn checked(self) -> PyResult<Self> {
-        self.timed().check().map_err(|error| of_engine(&error))?;
+        self.timed().check().map_err(of_engine)?;
         self.check_unit()?;
         Ok(self)
     }
@@ -277,7 +220,7 @@ fn metres(given: &Bound<'_, PyAny>) -> PyResult<Vec<f32>> {
     }
     // A broadcast array repeats one number, and takes no memory before it is copied.
     if array.len() > MAX_RANGES {
-        return Err(of_engine(&EngineError::TooManyRanges(array.len())));
+        return Err(of_engine(EngineError::TooManyRanges(array.len())));
     }
     if let Ok(ranges) = array.extract::<PyReadonlyArray1<'_, f32>>() {
         return Ok(ranges.as_array().to_vec());

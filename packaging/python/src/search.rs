@@ -43,11 +43,11 @@ fn prepared(map: &Map, settings: EngineSettings, prior: Prior) -> PyResult<Local
         prior,
     };
     let prepared = index_cache::prepared_map(cache.as_ref(), map.view(cells), settings);
-    let (prepared, kept) = prepared.map_err(|error| of_engine(&error))?;
+    let (prepared, kept) = prepared.map_err(of_engine)?;
     if let Some(unsaved) = kept.unsaved {
         unsaved.save().map_err(|error| of_cache(&error))?;
     }
-    Localizer::of_maps(vec![prepared]).map_err(|error| of_engine(&error))
+    Localizer::of_maps(vec![prepared]).map_err(of_engine)
 }
 
 /// Runs a search until Python's signal handlers want to stop it. Python's lock must not be held.
@@ -58,7 +58,7 @@ pub(crate) fn until_signal<T>(
     let found = run(&|| signals.ask());
     match (found, signals.said.take()) {
         (_, Some(interrupt)) => Err(interrupt),
-        (Err(error), None) => Err(of_engine(&error)),
+        (Err(error), None) => Err(of_engine(error)),
         (Ok(Some(found)), None) => Ok(found),
         (Ok(None), None) => Err(crate::error::value("the search was stopped")),
     }

@@ -28,6 +28,8 @@ const EXPECTED_ERROR: (f64, f64) = (0.5, 0.26);
 /// tracker follows one robot: calls from several threads wait for each other.
 #[pyclass(frozen, module = "backcast")]
 pub(crate) struct Tracker {
+    /// The map.
+    #[pyo3(get)]
     map: Py<Map>,
     tracker: Mutex<engine::Tracker>,
 }
@@ -59,7 +61,7 @@ impl Tracker {
         let odom_from_base = numbers::pose("pose", pose)?;
         self.with_tracker(py, |tracker| {
             let added = tracker.add_odometry(stamp_ns, odom_from_base);
-            added.map_err(|error| of_engine(&error))
+            added.map_err(of_engine)
         })
     }
 
@@ -101,17 +103,23 @@ impl Tracker {
         time_increment: f64,
     ) -> PyResult<TrackedPose> {
         let values = (angle_min, angle_increment, stamp_ns);
-        let (limits, mount) = ((range_min, range_max), (mount, upside_down));
+        let is_mounted = mount.is_some() || upside_down;
         let has_others = values != (None, None, None)
-            || limits != (0.0, None)
-            || mount.0.is_some()
-            || upside_down
+            || (range_min, range_max) != (0.0, None)
+            || is_mounted
             || time_increment != 0.0;
         let scans = scan::scans_of(ranges, has_others, || match values {
-            (Some(min), Some(increment), Some(stamp_ns)) => {
-                let times = (stamp_ns, time_increment);
-                GivenScan::new(ranges, (min, increment), limits, mount, times)
-            }
+            (Some(angle_min), Some(angle_increment), Some(stamp_ns)) => GivenScan::new(
+                ranges,
+                angle_min,
+                angle_increment,
+                range_min,
+                range_max,
+                mount,
+                upside_down,
+                stamp_ns,
+                time_increment,
+            ),
             _ => Err(scan::missing("angle_min, angle_increment or stamp_ns")),
         })?;
         let scans: Vec<TimedScan<'_>> = scans.iter().map(|scan| scan.get().timed()).collect();
@@ -152,7 +160,7 @@ impl Tracker {
         };
         self.with_tracker(py, |tracker| {
             let expected = tracker.expect((0, pose), covariance);
-            expected.map_err(|error| of_engine(&error))
+            expected.map_err(of_engine)
         })
     }
 
@@ -162,12 +170,6 @@ impl Tracker {
             tracker.reset();
             Ok(())
         })
-    }
-
-    /// The map.
-    #[getter]
-    fn map(&self, py: Python<'_>) -> Py<Map> {
-        self.map.clone_ref(py)
     }
 
     fn __repr__(&self) -> String {
