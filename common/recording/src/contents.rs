@@ -22,9 +22,6 @@ pub struct Mounted {
 
 impl Recording {
     /// Returns the newest map of the readable part, if there is one.
-    ///
-    /// # Errors
-    /// If several topics qualify, or the map is invalid.
     pub fn map(&self) -> Result<Option<OccupancyGrid>, RecordingError> {
         let mut newest = None;
         for map in self.maps()? {
@@ -40,9 +37,6 @@ impl Recording {
 
     /// Iterates over all maps of the readable part by log time, with that time in nanoseconds. A
     /// map that does not decode is an error in its place.
-    ///
-    /// # Errors
-    /// If several topics qualify.
     pub fn maps(
         &self,
     ) -> Result<
@@ -73,10 +67,6 @@ impl Recording {
     /// prefix that ends in a slash. Chains of transforms are followed; if one frame has several
     /// transforms, the latest counts, as in tf2. An invalid transform is a note, unless the laser's
     /// mount depends on it.
-    ///
-    /// # Errors
-    /// If the laser's mount depends on an invalid transform, or the laser is neither level nor
-    /// upside down.
     pub fn mounted(&self, laser: &str) -> Result<Mounted, RecordingError> {
         if let Some(cloud) = self.cloud().filter(|cloud| cloud.frame == laser) {
             return Ok(Mounted {
@@ -210,9 +200,6 @@ impl Recording {
 
     /// Returns the true poses of the readable part, by the stamp of their scan in nanoseconds;
     /// empty if there are none.
-    ///
-    /// # Errors
-    /// If one is not a valid pose, or two contradict each other.
     pub fn ground_truths(&self) -> Result<BTreeMap<i64, GroundTruth>, RecordingError> {
         let mut truths = BTreeMap::new();
         for record in self.on_topic(Kind::PoseStamped)? {

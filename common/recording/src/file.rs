@@ -117,9 +117,6 @@ impl RecordedFile {
 
     /// Checks that the file still has its first `end` bytes, for the record that starts at byte
     /// `at`. Reading what another process has cut off would end this process (SIGBUS).
-    ///
-    /// # Errors
-    /// [`Damage::Truncated`] if the file was cut since it was opened.
     pub(crate) fn ensure_long(&self, end: usize, at: usize) -> Result<(), Damage> {
         let Bytes::Mapped(file, _) = &self.bytes else {
             return Ok(());

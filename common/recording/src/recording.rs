@@ -10,7 +10,7 @@ use std::sync::Arc;
 use crate::block::Block;
 use crate::cloud::CloudLaser;
 use crate::file::RecordedFile;
-use crate::folder::{self, Listed};
+use crate::folder;
 use crate::{AttachedFile, Channel, Damage, Kind, MetadataRecord, RecordingError, topics};
 
 pub use raw::{RawRecord, RawRecords};
@@ -18,7 +18,7 @@ pub use reading::Records;
 
 /// A recording whose channels are known and whose checksums have been verified: one file, or
 /// several that are read as one.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub struct Recording {
     path: PathBuf,
     files: Vec<RecordedFile>,
@@ -37,12 +37,8 @@ impl Recording {
     /// content.
     ///
     /// A truncated or damaged file opens up to the damage, which is the last item of
-    /// [`Recording::records`]. The file is mapped: it may grow, but must not be truncated while it
-    /// is open.
-    ///
-    /// # Errors
-    /// If it cannot be read, or does not even start as a recording; for an SQLite bag, on any
-    /// damage.
+    /// [`Recording::records`]; an SQLite bag opens only without damage. The file is mapped: it may
+    /// grow, but must not be truncated while it is open.
     pub fn open(path: impl AsRef<Path>) -> Result<Self, RecordingError> {
         Recording::open_all(&[path])
     }
@@ -63,8 +59,23 @@ impl Recording {
             }
         }
         let names: Vec<String> = paths().map(|path| path.display().to_string()).collect();
-        let files = opened(&listed)?;
-        Ok(Recording::of(names.join(" and ").into(), files))
+        let mut files = Vec::new();
+        for file in &listed {
+            // If there are several, one that does not even start as a recording counts as damage,
+            // like the last part of a recorder that was killed.
+            files.push(match RecordedFile::open(file) {
+                Err(RecordingError::Damaged { path, damage, .. }) => {
+                    RecordedFile::without_content(path, damage)
+                }
+                file => file?,
+            });
+        }
+        let recording = Recording::of(names.join(" and ").into(), files);
+        let mut files = recording.files.iter();
+        match recording.damage_error() {
+            Some(error) if files.all(RecordedFile::is_without_content) => Err(error),
+            _ => Ok(recording),
+        }
     }
 
     /// Opens a recording in memory; errors call it `name`.
@@ -77,12 +88,7 @@ impl Recording {
     fn of(path: PathBuf, files: Vec<RecordedFile>) -> Self {
         let mut recording = Recording {
             path,
-            files: Vec::new(),
-            channels: Vec::new(),
-            attachments: Vec::new(),
-            metadata: Vec::new(),
-            preferred: BTreeMap::new(),
-            cloud: None,
+            ..Recording::default()
         };
         for (index, file) in files.iter().enumerate() {
             for channel in file.survey.registry.channels() {
@@ -294,29 +300,5 @@ impl Recording {
 
     pub(crate) fn files(&self) -> &[RecordedFile] {
         &self.files
-    }
-}
-
-/// Opens files. If there are several, one that does not even start as a recording counts as damage,
-/// like the last part of a recorder that was killed.
-fn opened(listed: &[Listed]) -> Result<Vec<RecordedFile>, RecordingError> {
-    let (mut files, mut failure) = (Vec::new(), None);
-    for file in listed {
-        match RecordedFile::open(file) {
-            Ok(file) => files.push(file),
-            Err(RecordingError::Damaged { path, damage, .. }) => {
-                files.push(RecordedFile::without_content(path.clone(), damage.clone()));
-                failure.get_or_insert(RecordingError::Damaged {
-                    path,
-                    readable: 0,
-                    damage,
-                });
-            }
-            Err(error) => return Err(error),
-        }
-    }
-    match failure {
-        Some(error) if files.iter().all(RecordedFile::is_without_content) => Err(error),
-        _ => Ok(files),
     }
 }

@@ -11,9 +11,6 @@ impl Recording {
     /// Takes the point clouds of a topic as the only scans, if the options name one: each is
     /// converted when it is read, by the mount that the options or the transforms of the recording
     /// state.
-    ///
-    /// # Errors
-    /// If there are none on the topic, the first one cannot be decoded, or its mount is not known.
     pub fn take_cloud(&mut self, options: &CloudOptions) -> Result<(), RecordingError> {
         let Some(topic) = &options.cloud_topic else {
             return Ok(());

@@ -111,10 +111,6 @@ impl<W: Write + Seek> RecordingWriter<W> {
 
     /// Writes the encoded bytes of a message of any type; the first message of a topic determines
     /// its encoding. The topics of maps and of static transforms are latched.
-    ///
-    /// # Errors
-    /// If the topic has another schema, the time is before 1970, or it cannot be
-    /// written.
     pub fn write_bytes(
         &mut self,
         topic: &str,

@@ -99,6 +99,7 @@ impl Database {
 
 const COPY: &str = "bag.db3";
 
+#[allow(clippy::needless_pass_by_value, reason = "it is given to map_err")]
 fn no_room(error: io::Error) -> Fault {
     let folder = std::env::temp_dir();
     let folder = folder.display();

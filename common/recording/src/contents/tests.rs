@@ -114,14 +114,18 @@ fn a_transform_that_is_none_is_a_note_unless_the_laser_needs_it() {
         fixed(vec![
             transform("base_link", "laser", 0.5, LEVEL),
             broken("camera"),
+            // The valid one before it counts.
+            broken("laser"),
         ]),
     )]);
     let mounted = recording.mounted("laser").unwrap();
     assert_eq!(mounted.mount.unwrap().base_from_laser.x, 0.5);
-    assert_eq!(
-        mounted.notes,
-        ["the transform from base_link to camera is ignored: the position (NaN, 0) is not finite"]
-    );
+    let note = |child: &str| {
+        format!(
+            "the transform from base_link to {child} is ignored: the position (NaN, 0) is not finite"
+        )
+    };
+    assert_eq!(mounted.notes, ["camera", "laser"].map(note));
     assert_eq!(
         recording.mounted("camera").unwrap_err().to_string(),
         "r.mcap: the mount of camera is not known, for the transform from base_link to camera is \

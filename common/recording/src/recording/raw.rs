@@ -53,18 +53,14 @@ impl<'a> RawRecords<'a> {
         is_wanted: impl Fn(&Channel) -> bool + 'a,
         damage: Option<RecordingError>,
     ) -> Self {
-        let files = recording.files().iter().enumerate();
-        let has_wanted = |file: &RecordedFile, block: &Block| {
-            let channels = block.counts.keys();
-            let mut channels = channels.filter_map(|id| file.survey.registry.channel(*id));
-            channels.any(&is_wanted)
-        };
-        let of_file = |(index, file): (usize, &'a RecordedFile)| {
-            let blocks = file.survey.blocks.iter();
-            let blocks = blocks.filter(|block| has_wanted(file, block));
-            blocks.map(|block| (index, block)).collect::<Vec<_>>()
-        };
-        let mut blocks: Vec<(usize, &Block)> = files.flat_map(of_file).collect();
+        let mut blocks = Vec::new();
+        for (index, file) in recording.files().iter().enumerate() {
+            let channel = |id: &u16| file.survey.registry.channel(*id);
+            let has_wanted =
+                |block: &&Block| block.counts.keys().filter_map(channel).any(&is_wanted);
+            let wanted = file.survey.blocks.iter().filter(has_wanted);
+            blocks.extend(wanted.map(|block| (index, block)));
+        }
         blocks.sort_by_key(|(file, block)| Reverse((block.first_ns, *file, block.at)));
         RawRecords {
             recording,
@@ -87,9 +83,7 @@ impl<'a> RawRecords<'a> {
                 break;
             }
             self.blocks.pop();
-            let Some(file) = self.recording.files().get(index) else {
-                continue;
-            };
+            let file = &self.recording.files()[index];
             self.unpack((index, file), block)
                 .map_err(|damage| RecordingError::Damaged {
                     path: file.path.clone(),

@@ -22,9 +22,6 @@ pub struct Encoded {
 
 impl Encoded {
     /// Encodes a message of a topic that is not latched.
-    ///
-    /// # Errors
-    /// If a string or a sequence in it is longer than CDR allows.
     pub fn new<M: RosMessage>(
         topic: impl Into<Cow<'static, str>>,
         log_time_ns: i64,
