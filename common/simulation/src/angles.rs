@@ -17,7 +17,6 @@ pub struct Bearings {
 impl Bearings {
     /// Bearings over a field of view that is centred ahead; over a full turn, the last one is a
     /// step before the first.
-    #[must_use]
     pub fn over(field_of_view: f64, count: usize) -> Self {
         // Less than a thousandth of a step below a turn is a rounded full turn.
         let is_turn = field_of_view > TAU * (1.0 - 1e-3 / count as f64);
@@ -29,13 +28,11 @@ impl Bearings {
         }
     }
 
-    #[must_use]
     pub fn get(&self, i: usize) -> f64 {
         f64::from(self.angle_min) + i as f64 * f64::from(self.angle_increment)
     }
 
     /// The last bearing, radians.
-    #[must_use]
     pub fn angle_max(&self) -> f32 {
         self.get(self.count - 1) as f32
     }

@@ -76,14 +76,12 @@ pub struct DriveConfig {
 
 impl DriveConfig {
     /// Maximum range, in metres.
-    #[must_use]
     pub fn range_max_m(&self) -> f64 {
         self.range_max
             .unwrap_or(if self.sonar.sonar { 5.0 } else { 30.0 })
     }
 
     /// Sensors on the robot, the main one first; a single sensor has no name.
-    #[must_use]
     pub fn mounts(&self) -> Vec<NamedMount> {
         match &self.lasers[..] {
             [] => vec![NamedMount {
@@ -95,7 +93,6 @@ impl DriveConfig {
     }
 
     /// Time between beams of a scan, in seconds, in the 32-bit precision of a `LaserScan`.
-    #[must_use]
     pub fn time_increment_s(&self, beams: usize) -> f32 {
         (self.scan_duration / beams.saturating_sub(1).max(1) as f64) as f32
     }

@@ -21,17 +21,12 @@ const MAX_SCANS: u64 = 864_000;
 /// One scan with its poses.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Snapshot {
-    /// Time since the start of the drive, in nanoseconds.
-    pub time_ns: i64,
+    /// Odometry at the first beam.
+    pub wheels: Wheels,
     /// True pose of the base at the first beam.
     pub map_from_base: Pose,
     /// True pose of the (first) sensor at the middle of the scan.
     pub map_from_laser: Pose,
-    /// Pose of the base by odometry, at the first beam.
-    pub odom_from_base: Pose,
-    /// Velocity of the base by odometry since its previous sample, in the base's frame: m/s, m/s
-    /// and rad/s; zero in the first scan.
-    pub twist: Pose,
     /// Readings of the (first) sensor by bearing, in metres; infinite without a return, NaN without
     /// a transducer.
     pub ranges: Vec<f32>,
@@ -48,7 +43,8 @@ pub struct Wheels {
     pub time_ns: i64,
     /// Pose of the base.
     pub odom_from_base: Pose,
-    /// Velocity as in [`Snapshot::twist`].
+    /// Velocity of the base since the previous sample, in the base's frame: m/s, m/s and rad/s;
+    /// zero in the first sample.
     pub twist: Pose,
 }
 
@@ -78,10 +74,6 @@ pub struct Drive {
 
 impl Drive {
     /// Prepares a drive along a path through a map.
-    ///
-    /// # Errors
-    /// The path or a sensor on its mount is blocked or leaves the map, the drive is too long, or
-    /// there is no free place for people.
     pub fn new(map: &OccupancyGrid, path: &Path, config: &DriveConfig) -> anyhow::Result<Self> {
         let obstacles = Obstacles::of(map);
         path.check(&obstacles)?;
@@ -142,7 +134,6 @@ impl Drive {
         Ok(drive)
     }
 
-    #[must_use]
     pub fn bearings(&self) -> Bearings {
         match &self.sensor {
             Sensor::Laser(bearings) => *bearings,
@@ -151,7 +142,6 @@ impl Drive {
     }
 
     /// Total number of scans.
-    #[must_use]
     pub fn scans(&self) -> u64 {
         self.scans
     }
@@ -204,11 +194,9 @@ impl Drive {
         let end_s = start_s + self.duration_s();
         let at_end = self.timetable.at(end_s).filter(|_| end_s > start_s);
         Snapshot {
-            time_ns: wheels.time_ns,
+            wheels,
             map_from_base,
             map_from_laser,
-            odom_from_base: wheels.odom_from_base,
-            twist: wheels.twist,
             ranges,
             others: scans.collect(),
             after: at_end.map(|map_from_base| self.wheels(end_s, map_from_base)),
@@ -256,12 +244,9 @@ impl Drive {
 }
 
 fn check_names(mounts: &[NamedMount]) -> anyhow::Result<()> {
-    for (index, laser) in mounts.iter().enumerate() {
-        if mounts[..index].iter().any(|other| other.name == laser.name) {
-            bail!(
-                "two lasers are called {}; allowed are lasers with names of their own",
-                laser.name
-            );
+    for (index, NamedMount { name, .. }) in mounts.iter().enumerate() {
+        if mounts[..index].iter().any(|other| other.name == *name) {
+            bail!("two lasers are called {name}; allowed are lasers with names of their own");
         }
     }
     Ok(())

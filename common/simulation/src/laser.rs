@@ -22,7 +22,6 @@ pub struct LaserConfig {
 }
 
 impl LaserConfig {
-    #[must_use]
     pub fn bearings(&self) -> Bearings {
         let beams = self.beams.map_or(361, |beams| beams as usize);
         Bearings::over(self.field_of_view.unwrap_or(PI), beams)

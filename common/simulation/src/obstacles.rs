@@ -58,7 +58,6 @@ impl Axis {
 }
 
 impl Obstacles {
-    #[must_use]
     pub fn of(map: &OccupancyGrid) -> Self {
         let is_occupied = |&cell: &u8| cell >= OCCUPIED_FROM && cell != UNKNOWN;
         Obstacles {
@@ -93,7 +92,6 @@ impl Obstacles {
     ///
     /// Walks from cell to cell (Amanatides and Woo, A Fast Voxel Traversal Algorithm for Ray
     /// Tracing, 1987); the range ends where the ray enters the square, up to rounding.
-    #[must_use]
     pub fn range(&self, x: f64, y: f64, angle: f64, reach_m: f64) -> Option<f64> {
         let [start_x, start_y] = self.cells(x, y);
         let (sin, cos) = (angle + self.grid_from_map.yaw).sin_cos();

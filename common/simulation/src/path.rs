@@ -39,16 +39,11 @@ impl FromStr for Path {
 }
 
 impl Path {
-    #[must_use]
     pub fn corners(&self) -> &[[f64; 2]] {
         &self.0
     }
 
     /// Checks that the robot's centre can follow the path.
-    ///
-    /// # Errors
-    /// Names the first corner that is off the map or equal to the previous one, or the first
-    /// obstacle on the path.
     pub(crate) fn check(&self, obstacles: &Obstacles) -> anyhow::Result<()> {
         for (corner, &[x, y]) in (1..).zip(&self.0) {
             if !obstacles.holds(x, y) {

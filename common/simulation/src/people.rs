@@ -39,9 +39,6 @@ pub(crate) struct People {
 
 impl People {
     /// Places people near the path.
-    ///
-    /// # Errors
-    /// There is no free place for them.
     pub(crate) fn new(
         count: u32,
         path: &Path,

@@ -153,7 +153,7 @@ fn taken(drive: Drive, base_from_laser: Pose) -> Vec<Taken> {
     let mut way_m = 0.0;
     let mut before: Option<Pose> = None;
     let scans = drive.map(|snapshot| {
-        let after = snapshot.odom_from_base;
+        let after = snapshot.wheels.odom_from_base;
         way_m += before.map_or(0.0, |before| before.distance_to(after));
         before = Some(after);
         Taken {

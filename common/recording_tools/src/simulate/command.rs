@@ -8,7 +8,7 @@ use progress::{Progress, say};
 use recording::write::{Packing, RecordingWriter};
 use recording::{GROUND_TRUTH, MAP, ODOM, TF_STATIC};
 use ros::{PointCloud2, RosMessage, Time};
-use simulation::{Drive, DriveConfig, Path};
+use simulation::{Drive, DriveConfig, Path, Wheels};
 
 use super::lidar;
 use super::messages::Messages;
@@ -43,18 +43,19 @@ pub struct Config {
     drive: DriveConfig,
 }
 
-/// Writes the recording, and prints a summary.
-///
-/// # Errors
-/// If the map cannot be used, the path cannot be driven, or the file cannot be written. An
-/// impossible drive is rejected before the file is touched.
+/// Writes the recording, and prints a summary. An impossible drive is rejected before the file is
+/// touched.
 pub fn run(config: &Config) -> anyhow::Result<ExitCode> {
     output::prepare(&config.out, config.force)?;
     let map = map::load_within(map::MemoryLimit::NONE, &config.map, |key| {
         say(&key.to_string());
     })?;
     let drive = Drive::new(&map, &config.path, &config.drive)?;
-    let made = Messages::new(&config.drive, drive.bearings());
+    let made = Messages {
+        config: &config.drive,
+        bearings: drive.bearings(),
+        lasers: config.drive.mounts(),
+    };
     let start_ns = config.start_time * SECOND_NS;
     let scans = drive.scans();
     let progress = Progress::new("simulating", scans);
@@ -63,21 +64,20 @@ pub fn run(config: &Config) -> anyhow::Result<ExitCode> {
     writer.write(MAP, start_ns, &made.map(&map, start))?;
     writer.write(TF_STATIC, start_ns, &made.mounts(start))?;
     for snapshot in drive {
-        let stamp_ns = start_ns + snapshot.time_ns;
+        let odometry = |wheels: &Wheels| {
+            let stamp = time(start_ns + wheels.time_ns);
+            messages::odometry(stamp, wheels.odom_from_base, wheels.twist)
+        };
+        let stamp_ns = start_ns + snapshot.wheels.time_ns;
         let stamp = time(stamp_ns);
-        let odometry = messages::odometry(stamp, snapshot.odom_from_base, snapshot.twist);
-        writer.write(ODOM, stamp_ns, &odometry)?;
-        writer.write(
-            GROUND_TRUTH,
-            stamp_ns,
-            &messages::truth(stamp, snapshot.map_from_laser),
-        )?;
+        writer.write(ODOM, stamp_ns, &odometry(&snapshot.wheels))?;
+        let truth = messages::truth(stamp, snapshot.map_from_laser);
+        writer.write(GROUND_TRUTH, stamp_ns, &truth)?;
         // A scan is recorded when its last beam is.
         let mut end_ns = stamp_ns;
         if let Some(wheels) = &snapshot.after {
             end_ns = start_ns + wheels.time_ns;
-            let odometry = messages::odometry(time(end_ns), wheels.odom_from_base, wheels.twist);
-            writer.write(ODOM, end_ns, &odometry)?;
+            writer.write(ODOM, end_ns, &odometry(wheels))?;
         }
         if let Some(cloud) = made.cloud(&snapshot, stamp) {
             let (schema, text) = (PointCloud2::SCHEMA, PointCloud2::DEFINITION);

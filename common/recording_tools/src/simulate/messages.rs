@@ -9,25 +9,19 @@ use simulation::{Bearings, DriveConfig, NamedMount, Snapshot};
 use super::lidar;
 use crate::messages;
 
-pub(super) struct Messages {
-    bearings: Bearings,
-    lasers: Vec<NamedMount>,
-    has_rings: bool,
-    time_increment_s: f32,
-    range_max_m: f32,
-    scan_time_s: f32,
+pub(super) struct Messages<'a> {
+    pub(super) config: &'a DriveConfig,
+    pub(super) bearings: Bearings,
+    pub(super) lasers: Vec<NamedMount>,
 }
 
-impl Messages {
-    pub(super) fn new(config: &DriveConfig, bearings: Bearings) -> Self {
-        Messages {
-            bearings,
-            lasers: config.mounts(),
-            has_rings: config.rings.is_some(),
-            time_increment_s: config.time_increment_s(bearings.count),
-            range_max_m: config.range_max_m() as f32,
-            scan_time_s: (1.0 / config.rate) as f32,
-        }
+impl Messages<'_> {
+    fn has_rings(&self) -> bool {
+        self.config.rings.is_some()
+    }
+
+    fn time_increment_s(&self) -> f32 {
+        self.config.time_increment_s(self.bearings.count)
     }
 
     pub(super) fn map(&self, map: &OccupancyGrid, stamp: Time) -> Message {
@@ -40,7 +34,7 @@ impl Messages {
     pub(super) fn mounts(&self, stamp: Time) -> Message {
         let transform = |laser: &NamedMount| {
             let mut level = Transform::from_planar(laser.mount.base_from_laser);
-            if self.has_rings {
+            if self.has_rings() {
                 level.translation.z = lidar::HEIGHT_M;
             }
             let transform = match laser.mount.is_upside_down {
@@ -55,9 +49,9 @@ impl Messages {
     pub(super) fn cloud(&self, snapshot: &Snapshot, stamp: Time) -> Option<PointCloud2> {
         let rings = || std::iter::once(&snapshot.ranges).chain(&snapshot.others);
         let header = Header::new(stamp, &frame(""));
-        let times = self.time_increment_s;
+        let times = self.time_increment_s();
         let is_upside_down = self.lasers.first()?.mount.is_upside_down;
-        self.has_rings
+        self.has_rings()
             .then(|| lidar::cloud(header, self.bearings, times, is_upside_down, rings()))
     }
 
@@ -68,7 +62,7 @@ impl Messages {
         stamp: Time,
     ) -> impl Iterator<Item = (String, Message)> {
         let rings = snapshot.others.len() + 1;
-        let first = if self.has_rings { rings / 2 } else { 0 };
+        let first = if self.has_rings() { rings / 2 } else { 0 };
         let scans = std::iter::once(snapshot.ranges).chain(snapshot.others);
         let scans = scans.skip(first);
         self.lasers.iter().zip(scans).map(move |(laser, ranges)| {
@@ -83,10 +77,10 @@ impl Messages {
             angle_min: self.bearings.angle_min,
             angle_max: self.bearings.angle_max(),
             angle_increment: self.bearings.angle_increment,
-            time_increment: self.time_increment_s,
-            scan_time: self.scan_time_s,
+            time_increment: self.time_increment_s(),
+            scan_time: (1.0 / self.config.rate) as f32,
             range_min: 0.0,
-            range_max: self.range_max_m,
+            range_max: self.config.range_max_m() as f32,
             ranges,
             intensities: Vec::new(),
         })
