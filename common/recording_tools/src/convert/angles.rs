@@ -28,24 +28,23 @@ pub(super) fn of(laser: &Laser, mounting: &Mounting) -> Result<(f64, f64), Strin
         .unwrap_or_else(|| usual_view(beams, step_known));
     let (full, without_last) = (view / gaps(beams) as f64, view / beams.max(1) as f64);
     let off = |step: f64| (step / step_known - 1.0).abs();
-    let step = if off(full).min(off(without_last)) < SAME_STEP {
-        if off(full) < off(without_last) {
-            full
-        } else {
-            without_last
-        }
-    } else {
-        step_over(view, beams)
+    let nearest = match off(full) < off(without_last) {
+        true => full,
+        false => without_last,
+    };
+    // Without a known step, neither is near it.
+    let step = match off(nearest) < SAME_STEP {
+        true => nearest,
+        false => step_over(view, beams),
     };
     let start = -view / 2.0;
     // If the laser looks back but its pose does not say so, its beams are turned instead.
     let is_turned = laser.poses.is_some_and(|poses| {
         geometry::wrap_angle(poses.laser.yaw - poses.robot.yaw).abs() < PI / 4.0
     });
-    let turned = if (laser.kind, laser.number) == (Kind::Old, 2) && is_turned {
-        PI
-    } else {
-        0.0
+    let turned = match (laser.kind, laser.number) {
+        (Kind::Old, 2) if is_turned => PI,
+        _ => 0.0,
     };
     Ok((start + turned, step))
 }
@@ -101,18 +100,6 @@ mod tests {
     use super::super::carmen::Poses;
     use super::*;
 
-    fn laser(number: u8, beams: usize) -> Laser {
-        Laser {
-            kind: Kind::Old,
-            number,
-            angles: None,
-            range_max_m: None,
-            ranges: vec![1.0; beams],
-            poses: None,
-            time_ns: 0,
-        }
-    }
-
     /// Angles of an old line, in degrees.
     fn angles(beams: usize, view_deg: Option<f64>, step_deg: Option<f64>) -> (f64, f64) {
         let mounting = Mounting {
@@ -120,7 +107,7 @@ mod tests {
             step: step_deg.map(f64::to_radians),
             ..Mounting::default()
         };
-        let (start, step) = of(&laser(1, beams), &mounting).unwrap();
+        let (start, step) = of(&Laser::old(1, vec![1.0; beams]), &mounting).unwrap();
         (start.to_degrees(), step.to_degrees())
     }
 
@@ -167,7 +154,7 @@ mod tests {
         let start = |number, yaw| {
             let laser = Laser {
                 poses: Some(poses(yaw)),
-                ..laser(number, 181)
+                ..Laser::old(number, vec![1.0; 181])
             };
             of(&laser, &Mounting::default()).unwrap().0
         };

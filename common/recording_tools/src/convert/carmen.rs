@@ -100,6 +100,20 @@ pub(super) enum Fault {
 }
 
 impl Laser {
+    /// Creates an old line of laser `number`, without poses.
+    #[cfg(test)]
+    pub(super) fn old(number: u8, ranges: Vec<f32>) -> Self {
+        Laser {
+            kind: Kind::Old,
+            number,
+            angles: None,
+            range_max_m: None,
+            ranges,
+            poses: None,
+            time_ns: 0,
+        }
+    }
+
     pub(super) fn name(&self) -> String {
         name_of(self.kind, self.number)
     }

@@ -14,6 +14,7 @@ use recording::{Kind, Recording, is_bag, is_stream};
 use signal_hook::consts::{SIGINT, SIGTERM};
 use signal_hook::iterator::Signals;
 use signal_hook::low_level::emulate_default_handler;
+use tempfile::TempPath;
 
 use super::file::{self, ending};
 use super::report::Report;
@@ -60,10 +61,6 @@ fn range(text: &str) -> Result<f32, String> {
 }
 
 /// Converts one file.
-///
-/// # Errors
-/// If the formats of the two files are no valid pair, a file cannot be read or written, the output
-/// exists, or nothing could be converted.
 pub fn run(config: &Config) -> anyhow::Result<ExitCode> {
     let none = || no_conversion(&ending(&config.from), &config.to);
     if ending(&config.to) != "mcap" || ends_packed(&config.to) {
@@ -92,7 +89,7 @@ pub fn run(config: &Config) -> anyhow::Result<ExitCode> {
         let (from, reason) = (config.from.display(), report.why_nothing());
         bail!("nothing in {from} could be converted, and no file was written: {reason}");
     }
-    unfinished.keep();
+    unfinished.keep()?;
     Ok(print_report(&report, &config.to))
 }
 
@@ -176,25 +173,9 @@ fn finish(writer: RecordingWriter<BufWriter<File>>, config: &Config) -> anyhow::
     flushed.map_err(failed("write", &config.to))
 }
 
-/// A file that is deleted on drop unless it is kept, and by a signal that ends the command.
-struct Unfinished(Option<PathBuf>);
-
-impl Unfinished {
-    fn keep(mut self) {
-        self.0 = None;
-    }
-}
-
-impl Drop for Unfinished {
-    fn drop(&mut self) {
-        if let Some(path) = &self.0 {
-            // The failure of the conversion is reported; this may fail for the same reason.
-            let _ = std::fs::remove_file(path);
-        }
-    }
-}
-
-fn create(path: &Path, overwrites: bool) -> anyhow::Result<(BufWriter<File>, Unfinished)> {
+/// Creates the file, which is deleted on drop unless it is kept, and by a signal that ends the
+/// command.
+fn create(path: &Path, overwrites: bool) -> anyhow::Result<(BufWriter<File>, TempPath)> {
     output::prepare(path, overwrites)?;
     let mut signals = Signals::new([SIGINT, SIGTERM]).map_err(failed("create", path))?;
     let unfinished = path.to_owned();
@@ -206,7 +187,8 @@ fn create(path: &Path, overwrites: bool) -> anyhow::Result<(BufWriter<File>, Unf
         }
     });
     let file = File::create(path).map_err(failed("create", path))?;
-    Ok((BufWriter::new(file), Unfinished(Some(path.to_owned()))))
+    let unfinished = TempPath::try_from_path(path).map_err(failed("create", path))?;
+    Ok((BufWriter::new(file), unfinished))
 }
 
 fn failed<'p>(

@@ -290,14 +290,7 @@ mod tests {
         for nothing in ["", "# FLASER 1", "SYNC x", "PARAM alone", "\r"] {
             assert_eq!(parse(nothing), Ok(Line::Nothing), "{nothing}");
         }
-        for other in [
-            "TRUEPOS",
-            "RAWLASER6",
-            "RAWLASER",
-            "LASER1",
-            "ROBOTLASER_ACK1",
-            "XLASER3",
-        ] {
+        for other in "TRUEPOS RAWLASER6 RAWLASER LASER1 ROBOTLASER_ACK1 XLASER3".split(' ') {
             let line = parse(&format!("{other} 1 2"));
             assert_eq!(line, Ok(Line::Other(other.to_owned())));
         }

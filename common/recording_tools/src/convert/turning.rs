@@ -80,7 +80,6 @@ fn difference(old: &[f32], new: &[f32], shift: i64) -> Option<f32> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::carmen::{Kind, Laser};
     use super::*;
 
     /// A scan of a room of 6 by 4 m from its middle, one beam per degree.
@@ -90,15 +89,7 @@ mod tests {
             let (sin, cos) = (yaw + sign * f64::from(degree).to_radians()).sin_cos();
             (3.0 / cos.abs()).min(2.0 / sin.abs()) as f32
         };
-        Laser {
-            kind: Kind::Old,
-            number: 1,
-            angles: None,
-            range_max_m: None,
-            ranges: (-90..=90).map(range).collect(),
-            poses: None,
-            time_ns: 0,
-        }
+        Laser::old(1, (-90..=90).map(range).collect())
     }
 
     fn is_turned(yaws: &[f64], is_mirrored: bool) -> Option<bool> {
