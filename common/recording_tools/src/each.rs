@@ -9,9 +9,6 @@ use recording::Recording;
 
 /// Opens each recording with these topics, and prints the report on it. If there are several, an
 /// error is printed to standard error and the next one follows. Returns true if any failed.
-///
-/// # Errors
-/// If the only recording failed, or standard output is closed.
 pub(crate) fn each(
     paths: &[PathBuf],
     topics: &TopicOptions,

@@ -22,10 +22,8 @@ const CLEARLY: f64 = 0.03;
 /// Smallest number of readings of a scan that count, a twelfth of a turn: fewer fit anywhere.
 const MIN_READINGS: usize = 120;
 
-/// Returns a note on the chosen band and the best one, if a point cloud is the laser.
-///
-/// # Errors
-/// If the recording has no map, or cannot be read; other checks report that.
+/// Returns a note on the chosen band and the best one, if a point cloud is the laser. Other checks
+/// report a recording without a map, or one that cannot be read.
 pub(super) fn compare(
     recording: &mut Recording,
     options: &CloudOptions,

@@ -62,14 +62,11 @@ pub(super) fn all(
 fn damage(recording: &Recording) -> Option<Finding> {
     let damage = recording.damage()?;
     let messages = recording.messages();
-    let found = format!("{damage}; {messages} messages before that are readable");
-    Some(Finding::lost(
-        match (recording.file_count(), recording.damage_error()) {
-            (1, _) | (_, None) => found,
-            // If there are several files, the error names the damaged one.
-            (_, Some(error)) => error.to_string(),
-        },
-    ))
+    Some(Finding::lost(match recording.file_count() {
+        1 => format!("{damage}; {messages} messages before that are readable"),
+        // If there are several files, the error names the damaged one.
+        _ => recording.damage_error()?.to_string(),
+    }))
 }
 
 fn undecodable((topic, seen): (&String, &Seen)) -> Option<Finding> {

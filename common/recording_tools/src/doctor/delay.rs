@@ -39,9 +39,6 @@ pub(super) fn odometry_delay(
 /// Estimates the time to add to the odometry's stamps, in seconds; `None` if the scans do not show
 /// it or it is too small for a note. A scan without a time increment may be stamped at its start or
 /// its end, so that a delay of one scan period is nothing unusual.
-///
-/// # Errors
-/// If the recording has no map, or cannot be read; other checks report that.
 fn estimate(
     recording: &Recording,
     located: &Located,

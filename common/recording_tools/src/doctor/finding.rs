@@ -45,11 +45,7 @@ impl Finding {
 
 impl std::fmt::Display for Finding {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        let word = match self.severity {
-            Severity::Note => "note",
-            Severity::Problem => "problem",
-            Severity::Lost => "lost",
-        };
+        let word = format!("{:?}", self.severity).to_lowercase();
         write!(f, "  {word:<8} {}", self.finding)
     }
 }

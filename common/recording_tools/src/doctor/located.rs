@@ -50,8 +50,7 @@ pub(super) struct LocatedScan {
 }
 
 impl Located {
-    /// # Errors
-    /// If the recording has no map, or cannot be read; other checks report that.
+    /// Locates the scans. Other checks report a recording without a map, or one that cannot be read.
     pub(super) fn of(recording: &Recording, map: Option<&OccupancyGrid>) -> anyhow::Result<Self> {
         let mut session = Session::open(recording, &options(), map)?;
         let total = MAX_SCANS.min(session.scans.total() as usize);

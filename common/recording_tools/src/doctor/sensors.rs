@@ -229,7 +229,6 @@ mod tests {
             .collect()
     }
 
-    /// Scans of its laser with this mount.
     fn scans(mount: Pose) -> Vec<Vec<f32>> {
         poses()
             .iter()
