@@ -94,7 +94,15 @@ pub fn each_odometry(
     for record in recording.records_of(&[Kind::Odometry]) {
         let received = match record {
             Ok(record) if record.topic != *topic => continue,
-            Ok(record) => odometry_of(recording, &record),
+            Ok(Record {
+                log_time_ns,
+                message: Message::Odometry(message),
+                ..
+            }) => {
+                let odometry = measurements::odometry(&message);
+                odometry.map_err(|source| recording.unusable(topic, log_time_ns, source))
+            }
+            Ok(_) => continue,
             // The damage follows all readable messages, and is reported with the scans.
             Err(RecordingError::Damaged { .. }) => break,
             Err(error) if error.topic().is_some_and(|of| *of != **topic) => continue,
@@ -102,8 +110,7 @@ pub fn each_odometry(
             Err(error) => return Err(error),
         };
         match received {
-            Ok(Some(odometry)) => take(&odometry),
-            Ok(None) => {}
+            Ok(odometry) => take(&odometry),
             Err(error) => {
                 left_out += 1;
                 first.get_or_insert_with(|| with_causes(&error));
@@ -112,13 +119,4 @@ pub fn each_odometry(
     }
     let note = |first| format!("{left_out} messages of {topic} are ignored; the first: {first}");
     Ok(first.map(note).into_iter().collect())
-}
-
-fn odometry_of(recording: &Recording, record: &Record) -> Result<Option<Odometry>, RecordingError> {
-    let Message::Odometry(message) = &record.message else {
-        return Ok(None);
-    };
-    let odometry = measurements::odometry(message);
-    let unusable = |source| recording.unusable(&record.topic, record.log_time_ns, source);
-    Ok(Some(odometry.map_err(unusable)?))
 }

@@ -203,20 +203,12 @@ mod tests {
         let mut writer = RecordingWriter::in_memory(Packing::Zstd).unwrap();
         for (second, topic) in (0..).zip(topics) {
             let message = LaserScan {
-                header: Header::new(
-                    Time {
-                        sec: second,
-                        nanosec: 7,
-                    },
-                    "laser",
-                ),
+                header: Header::new(Time::from_ns(second * 1_000_000_000 + 7).unwrap(), "laser"),
                 ranges: vec![1.5],
                 ..LaserScan::default()
             };
-            let log_time_ns = i64::from(second) * 1000;
-            writer
-                .write(topic, log_time_ns, &Message::Scan(message))
-                .unwrap();
+            let message = Message::Scan(message);
+            writer.write(topic, 1000 * second, &message).unwrap();
         }
         let bytes = writer.finish().unwrap().into_inner();
         Recording::from_bytes("r.mcap", bytes).unwrap()

@@ -7,13 +7,8 @@ use super::*;
 const SECOND: i64 = 1_000_000_000;
 
 fn header(second: i32, frame: &str) -> ros::Header {
-    ros::Header::new(
-        Time {
-            sec: second,
-            nanosec: 5,
-        },
-        frame,
-    )
+    let ns = i64::from(second) * SECOND + 5;
+    ros::Header::new(Time::from_ns(ns).unwrap(), frame)
 }
 
 fn scan(second: i32, frame: &str) -> Message {
@@ -48,6 +43,13 @@ fn play(recording: &Recording) -> Vec<Result<Timed, PlaybackError>> {
     Source::new(recording, Channels::of(recording, &all).unwrap(), all).collect()
 }
 
+fn scan_in(played: &Result<Timed, PlaybackError>) -> (&ScanHeader, &[f32]) {
+    match &played.as_ref().unwrap().content {
+        Content::Scan(header, ranges) => (header, ranges),
+        other => panic!("{other:?}"),
+    }
+}
+
 #[test]
 fn readings_pass_as_they_are_and_the_mount_comes_with_them() {
     let mut transform = ros::TransformStamped {
@@ -65,13 +67,8 @@ fn readings_pass_as_they_are_and_the_mount_comes_with_them() {
         ("/scan", scan(8, "elsewhere")),
     ]);
     let played = play(&recording);
-    let Ok(Timed {
-        content: Content::Scan(header, ranges),
-        log_time_ns: 0,
-    }) = &played[0]
-    else {
-        panic!("{played:?}");
-    };
+    let (header, ranges) = scan_in(&played[0]);
+    assert_eq!(played[0].as_ref().unwrap().log_time_ns, 0);
     assert_eq!(header.stamp.measured_ns, 7 * SECOND + 5);
     assert_eq!((header.angle_min, header.angle_increment), (-1.5, 0.25));
     assert_eq!((header.range_max_m, header.frame.as_str()), (80.0, "laser"));
@@ -81,14 +78,7 @@ fn readings_pass_as_they_are_and_the_mount_comes_with_them() {
         (1.0, f32::INFINITY, -1.0)
     );
     assert!(ranges[1].is_nan());
-    let Ok(Timed {
-        content: Content::Scan(header, _),
-        ..
-    }) = &played[1]
-    else {
-        panic!("{played:?}");
-    };
-    assert_eq!(header.mount_known, 0);
+    assert_eq!(scan_in(&played[1]).0.mount_known, 0);
     assert_eq!(played.len(), 2);
 }
 
@@ -101,11 +91,8 @@ fn only_the_channels_that_are_meant_are_played() {
         ("/ground_truth", truth(3)),
     ]);
     let played = play(&recording);
-    let stamps: Vec<i64> = played
-        .iter()
-        .map(|timed| timed.as_ref().unwrap().stamp_ns())
-        .collect();
-    assert_eq!(stamps, [5, 3 * SECOND + 5]);
+    let stamps = played.into_iter().map(|timed| timed.unwrap().stamp_ns());
+    assert_eq!(Vec::from_iter(stamps), [5, 3 * SECOND + 5]);
 }
 
 #[test]
@@ -119,10 +106,8 @@ fn what_cannot_be_said_in_a_message_is_refused_one_by_one() {
     ]);
     let played = play(&recording);
     assert!(played[2].is_ok());
-    for (refused, expected) in played
-        .iter()
-        .zip(["/scan at log time 0 ns cannot be used: the frame", "/odom"])
-    {
+    let expected = ["/scan at log time 0 ns cannot be used: the frame", "/odom"];
+    for (refused, expected) in played.iter().zip(expected) {
         let error = refused.as_ref().unwrap_err();
         assert!(error.is_about_one_message());
         assert!(error.to_string().contains(expected), "{error}");
