@@ -51,6 +51,13 @@ pub(crate) fn row(name: &str, given: &Bound<'_, PyAny>, allowed: &str) -> PyResu
     numbers.map_err(|_| value(format!("{name} is {given}; allowed: {allowed}")))
 }
 
+/// Reads rows of numbers, all of this length; `None` if it is something else.
+pub(crate) fn rows<const N: usize>(given: &Bound<'_, PyAny>) -> Option<Vec<[f64; N]>> {
+    let numbers = |given: PyResult<Bound<'_, PyAny>>| row("row", &given.ok()?, "numbers").ok();
+    let rows = given.try_iter().ok()?;
+    rows.map(|row| numbers(row)?.try_into().ok()).collect()
+}
+
 /// Reads the covariance of a pose, three rows of three numbers.
 pub(crate) fn covariance(name: &str, given: &Bound<'_, PyAny>) -> PyResult<Covariance> {
     let wrong = || {
@@ -59,22 +66,11 @@ pub(crate) fn covariance(name: &str, given: &Bound<'_, PyAny>) -> PyResult<Covar
              radians, symmetric and positive definite"
         ))
     };
-    let rows = given.try_iter().and_then(|rows| {
-        let rows = rows.map(|row| crate::numbers::row(name, &row?, "numbers"));
-        rows.collect::<PyResult<Vec<_>>>()
-    });
-    let rows = rows.map_err(|_| wrong())?;
-    let all = rows.concat();
-    let is_square = rows.len() == 3 && rows.iter().all(|row| row.len() == 3);
-    let numbers: [f64; 9] = match all.try_into() {
-        Ok(numbers) if is_square => numbers,
-        _ => return Err(wrong()),
-    };
-    let covariance = Covariance::from_rows(numbers);
-    match covariance.is_positive_definite() {
-        true => Ok(covariance),
-        false => Err(wrong()),
-    }
+    let numbers = rows::<3>(given).and_then(|rows| rows.concat().try_into().ok());
+    let covariance = numbers.map(Covariance::from_rows);
+    covariance
+        .filter(|covariance| covariance.is_positive_definite())
+        .ok_or_else(wrong)
 }
 
 pub(crate) fn tuple(pose: Pose) -> PoseTuple {

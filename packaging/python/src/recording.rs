@@ -1,6 +1,7 @@
 //! A recording as arrays: scans, odometry, true poses and the map, read by `common/recording`.
 
 use std::collections::BTreeMap;
+use std::collections::btree_map::Entry;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -260,28 +261,26 @@ impl Contents {
         scan: LaserScan,
     ) -> PyResult<()> {
         let frame = &scan.header.frame_id;
-        if !self.lasers.contains_key(topic) {
-            let mount = recording.base_from_laser(frame);
-            let laser = LaserScans {
-                topic: topic.to_string(),
-                frame: frame.clone(),
-                mount: mount.map_err(|error| of_recording(&error))?,
-                messages: Vec::new(),
-            };
-            self.lasers.insert(topic.clone(), laser);
-        }
-        match self.lasers.get_mut(topic) {
-            Some(laser) if laser.frame == *frame => laser.messages.push(scan),
-            of_other => {
-                let first = of_other
-                    .map(|laser| laser.frame.as_str())
-                    .unwrap_or_default();
-                return Err(value(format!(
-                    "{}: the scans on {topic} have the frames {first} and {frame}; allowed: one",
-                    recording.path().display()
-                )));
+        let laser = match self.lasers.entry(topic.clone()) {
+            Entry::Occupied(known) => known.into_mut(),
+            Entry::Vacant(new) => {
+                let mount = recording.base_from_laser(frame);
+                new.insert(LaserScans {
+                    topic: topic.to_string(),
+                    frame: frame.clone(),
+                    mount: mount.map_err(|error| of_recording(&error))?,
+                    messages: Vec::new(),
+                })
             }
+        };
+        if laser.frame != *frame {
+            return Err(value(format!(
+                "{}: the scans on {topic} have the frames {} and {frame}; allowed: one",
+                recording.path().display(),
+                laser.frame
+            )));
         }
+        laser.messages.push(scan);
         Ok(())
     }
 }

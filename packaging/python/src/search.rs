@@ -1,7 +1,7 @@
 //! Maps prepared without Python's lock, and searches that any number of Python's threads may make at
 //! once, until Ctrl-C.
 
-use std::cell::{Cell, RefCell};
+use std::cell::Cell;
 use std::sync::{Mutex, PoisonError};
 use std::time::Instant;
 
@@ -54,9 +54,18 @@ fn prepared(map: &Map, settings: EngineSettings, prior: Prior) -> PyResult<Local
 pub(crate) fn until_signal<T>(
     run: impl FnOnce(&dyn Fn() -> bool) -> Result<Option<T>, EngineError>,
 ) -> PyResult<T> {
-    let signals = Signals::default();
-    let found = run(&|| signals.ask());
-    match (found, signals.said.take()) {
+    let (asked, said) = (Cell::new(Instant::now()), Cell::new(None));
+    let found = run(&|| {
+        let mut interrupt = said.take();
+        if asked.get().elapsed() >= SIGNALS_EVERY {
+            interrupt = check_signals().err().or(interrupt);
+            asked.set(Instant::now());
+        }
+        let is_over = interrupt.is_some();
+        said.set(interrupt);
+        is_over
+    });
+    match (found, said.take()) {
         (_, Some(interrupt)) => Err(interrupt),
         (Err(error), None) => Err(of_engine(error)),
         (Ok(Some(found)), None) => Ok(found),
@@ -106,33 +115,5 @@ impl Search {
         let workspaces = self.workspaces.lock();
         // Nothing that can panic runs while it is locked.
         workspaces.unwrap_or_else(PoisonError::into_inner)
-    }
-}
-
-/// Checks if Python's signal handlers want to stop: by default that of Ctrl-C does.
-struct Signals {
-    asked: Cell<Instant>,
-    said: RefCell<Option<PyErr>>,
-}
-
-impl Default for Signals {
-    fn default() -> Self {
-        Signals {
-            asked: Cell::new(Instant::now()),
-            said: RefCell::new(None),
-        }
-    }
-}
-
-impl Signals {
-    fn ask(&self) -> bool {
-        if self.asked.get().elapsed() >= SIGNALS_EVERY {
-            let said = check_signals().err();
-            self.asked.set(Instant::now());
-            if said.is_some() {
-                self.said.replace(said);
-            }
-        }
-        self.said.borrow().is_some()
     }
 }

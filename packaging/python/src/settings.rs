@@ -18,7 +18,7 @@ use pyo3::prelude::*;
 use pyo3::types::{PyBool, PyDict, PyString};
 
 use crate::error::value;
-use crate::numbers::row;
+use crate::numbers::{row, rows};
 
 /// Settings for locating a scan.
 #[derive(Debug, Clone, clap::Parser)]
@@ -46,40 +46,29 @@ pub(crate) struct TrackerSettings {
     pub(crate) motion: MotionConfig,
 }
 
-/// Settings that are not one number or word in Python; they are set after the others.
-#[derive(Debug, Default)]
-struct Bounds {
-    region: Option<Region>,
-    headings_within: Option<HeadingInterval>,
-}
-
 impl EngineSettings {
     /// Reads the settings from keywords.
     pub(crate) fn new(keywords: Option<&Bound<'_, PyDict>>) -> PyResult<Self> {
-        let (mut settings, bounds) = parse::<EngineSettings>(keywords)?;
-        settings.bound(bounds);
-        Ok(settings)
-    }
-
-    fn bound(&mut self, bounds: Bounds) {
-        self.vote_search.limits.region = bounds.region;
-        self.vote_search.limits.headings_within = bounds.headings_within;
+        parse(keywords, |settings: &mut EngineSettings| settings)
     }
 }
 
 impl TrackerSettings {
     /// Reads the settings from keywords.
     pub(crate) fn new(keywords: Option<&Bound<'_, PyDict>>) -> PyResult<Self> {
-        let (mut settings, bounds) = parse::<TrackerSettings>(keywords)?;
-        settings.engine.bound(bounds);
-        Ok(settings)
+        parse(keywords, |settings: &mut TrackerSettings| {
+            &mut settings.engine
+        })
     }
 }
 
 fn parse<T: CommandFactory + FromArgMatches>(
     keywords: Option<&Bound<'_, PyDict>>,
-) -> PyResult<(T, Bounds)> {
-    let (mut words, mut bounds) = (Vec::new(), Bounds::default());
+    engine: impl Fn(&mut T) -> &mut EngineSettings,
+) -> PyResult<T> {
+    // These two are not one number or word in Python, and are set after the others.
+    let (mut region, mut headings_within) = (None, None);
+    let mut words = Vec::new();
     let mut command = T::command();
     for (key, given) in keywords.iter().flat_map(|keywords| keywords.iter()) {
         let key: String = key.extract()?;
@@ -90,15 +79,18 @@ fn parse<T: CommandFactory + FromArgMatches>(
             continue;
         }
         match &*key {
-            "region" => bounds.region = Some(region(&given)?),
-            "headings_within" => bounds.headings_within = Some(interval(&given)?),
+            "region" => region = Some(polygon(&given)?),
+            "headings_within" => headings_within = Some(interval(&given)?),
             _ => words.extend(word(&key, option, &given)?),
         }
     }
     let settings = command
         .try_get_matches_from_mut(words)
         .and_then(|matches| T::from_arg_matches(&matches));
-    Ok((settings.map_err(|error| refused(&error))?, bounds))
+    let mut settings = settings.map_err(|error| refused(&error))?;
+    let limits = &mut engine(&mut settings).vote_search.limits;
+    (limits.region, limits.headings_within) = (region, headings_within);
+    Ok(settings)
 }
 
 /// Converts a keyword to an option of the command; `None` for a flag that is not set.
@@ -162,20 +154,11 @@ fn refused(error: &clap::Error) -> PyErr {
     value(text)
 }
 
-fn region(given: &Bound<'_, PyAny>) -> PyResult<Region> {
+fn polygon(given: &Bound<'_, PyAny>) -> PyResult<Region> {
     let allowed = "two corners of an upright rectangle, or all of any other polygon, each (x, y) \
                    in metres";
     let wrong = || value(format!("region is {given}; allowed: {allowed}"));
-    let corners = given.try_iter().and_then(|corners| {
-        let corners = corners.map(|corner| row("region", &corner?, allowed));
-        corners.collect::<PyResult<Vec<_>>>()
-    });
-    let corners = corners.map_err(|_| wrong())?;
-    let corners: Option<Vec<[f64; 2]>> = corners
-        .into_iter()
-        .map(|corner| corner.try_into().ok())
-        .collect();
-    let corners = corners.ok_or_else(wrong)?;
+    let corners = rows::<2>(given).ok_or_else(wrong)?;
     Region::new(&corners).map_err(|reason| value(format!("region: {reason}")))
 }
 
