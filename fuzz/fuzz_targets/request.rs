@@ -4,7 +4,7 @@
 #![no_main]
 
 use std::io::{ErrorKind, Read, Write};
-use std::net::{Shutdown, SocketAddr, TcpStream};
+use std::net::{Shutdown, SocketAddr, TcpListener, TcpStream};
 use std::os::unix::fs::PermissionsExt;
 use std::sync::mpsc::Receiver;
 use std::sync::{LazyLock, Mutex};
@@ -39,10 +39,9 @@ static PAGE: LazyLock<Page> = LazyLock::new(|| {
         host: Vec::new(),
         token_file: Some(token),
     };
-    let address = std::net::TcpListener::bind("127.0.0.1:0")
-        .unwrap()
-        .local_addr()
-        .unwrap();
+    let listener = TcpListener::bind("127.0.0.1:0").unwrap();
+    let address = listener.local_addr().unwrap();
+    drop(listener);
     let robots = Robots::default();
     robots.add(robot);
     let server = Server::start(address, &options, robots).unwrap();
@@ -64,11 +63,15 @@ fn read_all(stream: &mut TcpStream) -> Option<Vec<u8>> {
     }
 }
 
-fn ask(method: &str, path: &[u8], body: &[u8]) {
-    let mut stream = TcpStream::connect(PAGE.address).unwrap();
+fn connect() -> TcpStream {
+    let stream = TcpStream::connect(PAGE.address).unwrap();
+    let patience = Some(Duration::from_secs(10));
+    stream.set_read_timeout(patience).unwrap();
     stream
-        .set_read_timeout(Some(Duration::from_secs(10)))
-        .unwrap();
+}
+
+fn ask(method: &str, path: &[u8], body: &[u8]) {
+    let mut stream = connect();
     let host = PAGE.address;
     let mut request = [method.as_bytes(), b" ", path, b" HTTP/1.1\r\n"].concat();
     let length = body.len();
@@ -92,10 +95,7 @@ fn ask(method: &str, path: &[u8], body: &[u8]) {
 }
 
 fn watch(path: &[u8], sent: &[u8]) {
-    let mut stream = TcpStream::connect(PAGE.address).unwrap();
-    stream
-        .set_read_timeout(Some(Duration::from_secs(10)))
-        .unwrap();
+    let mut stream = connect();
     let mut request = [b"GET ", path, b" HTTP/1.1\r\n"].concat();
     let host = PAGE.address;
     request.extend_from_slice(
@@ -115,21 +115,14 @@ fn watch(path: &[u8], sent: &[u8]) {
 }
 
 fuzz_target!(|bytes: &[u8]| {
-    let Some((line, body)) = bytes
-        .iter()
-        .position(|&b| b == b'\n')
-        .map(|at| bytes.split_at(at))
-    else {
+    let mut lines = bytes.splitn(2, |&b| b == b'\n');
+    let (Some(line), Some(body)) = (lines.next(), lines.next()) else {
         return;
     };
-    let Some((method, path)) = line
-        .iter()
-        .position(|&b| b == b' ')
-        .map(|at| line.split_at(at))
-    else {
+    let mut words = line.splitn(2, |&b| b == b' ');
+    let (Some(method), Some(path)) = (words.next(), words.next()) else {
         return;
     };
-    let (path, body) = (&path[1..], &body[1..]);
     // Spaces and control characters end a path.
     if path.is_empty() || path.iter().any(|&b| b <= b' ') {
         return;
