@@ -17,36 +17,19 @@ pub struct Answers {
 }
 
 /// Plays a recording through a graph of its own, waiting for each result, until there are results
-/// of `scans` scans.
+/// of `scans` scans; the replayer ends by itself then.
 ///
-/// `accumulator` holds further arguments of that node.
+/// `accumulator` and `replayer` hold further arguments of those nodes.
 pub fn of_graph(
     tag: &str,
     recording: &Path,
     map: &Path,
     scans: usize,
     accumulator: &[&str],
-) -> Answers {
-    let source = [
-        "--rate",
-        "max",
-        "--wait-for",
-        "accumulator,peak_extractor",
-        "--recording",
-        recording.to_str().unwrap(),
-    ];
-    of_graph_fed_by(tag, map, scans, accumulator, &source)
-}
-
-/// Lets a replayer with these arguments feed a graph of its own until there are results of `scans`
-/// scans; the replayer ends by itself then.
-pub fn of_graph_fed_by(
-    tag: &str,
-    map: &Path,
-    scans: usize,
-    accumulator: &[&str],
     replayer: &[&str],
 ) -> Answers {
+    let wait = ["--rate", "max", "--wait-for", "accumulator,peak_extractor"];
+    let source = ["--recording", recording.to_str().unwrap()];
     let isolated = Isolated::new(tag);
     let graph = isolated.join("test");
     let votes = graph.subscriber::<topic::Votes>().unwrap();
@@ -58,7 +41,7 @@ pub fn of_graph_fed_by(
         start("accumulator", accumulator),
         start("peak_extractor", &[]),
     ];
-    let source = start("replayer", replayer);
+    let source = start("replayer", &[&wait[..], &source, replayer].concat());
     let answers = collect(&graph, &votes, &hypotheses, scans);
     assert_eq!(source.exit_code(), Some(0), "the replayer lost something");
     for node in nodes {
@@ -76,20 +59,17 @@ fn collect(
     let mut answers = Answers::default();
     let outcome = graph.run(&[votes, hypotheses], Duration::from_millis(100), |_| {
         while let Some(sample) = votes.receive()? {
-            answers
-                .votes
-                .push((*sample.header(), sample.items().to_vec()));
+            let votes = (*sample.header(), sample.items().to_vec());
+            answers.votes.push(votes);
         }
         while let Some(sample) = hypotheses.receive()? {
-            answers
-                .hypotheses
-                .push((*sample.header(), sample.items().to_vec()));
+            let hypotheses = (*sample.header(), sample.items().to_vec());
+            answers.hypotheses.push(hypotheses);
         }
         let is_complete = answers.votes.len() == scans && answers.hypotheses.len() == scans;
-        Ok::<_, TransportError>(if is_complete {
-            Flow::Stop
-        } else {
-            Flow::Continue
+        Ok::<_, TransportError>(match is_complete {
+            true => Flow::Stop,
+            false => Flow::Continue,
         })
     });
     outcome.unwrap();

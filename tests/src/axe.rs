@@ -13,9 +13,6 @@ const PACKAGE: &str = "axe-core@4.14.1";
 
 /// Returns the script, which is kept in the target folder. Concurrent tests wait for the one that
 /// fetches it.
-///
-/// # Errors
-/// Returns the output of the command that failed, for example without npm or a network.
 pub fn script() -> Result<String, String> {
     let (folder, _lock) = locked_folder(PACKAGE);
     let script = folder.join("package/axe.min.js");

@@ -1,7 +1,7 @@
 //! A headless Chromium that looks at a page, controlled by WebDriver.
 
 use std::io::{BufRead, BufReader};
-use std::process::{Child, Command, Stdio};
+use std::process::{Command, Stdio};
 use std::time::Duration;
 
 use fantoccini::wd::TimeoutConfiguration;
@@ -9,17 +9,28 @@ use fantoccini::{Client, ClientBuilder};
 use hyper_util::client::legacy::connect::HttpConnector;
 use serde_json::{Value, json};
 
+use crate::Killed;
+use crate::needs::Need;
+
 /// A browser with a window; it ends when this is dropped.
 pub struct Browser {
     client: Client,
     runtime: tokio::runtime::Runtime,
-    driver: Child,
+    _driver: Killed,
 }
 
 impl Browser {
     /// Opens a window of this size in pixels; below a width of 500 it is that of a telephone.
-    /// Returns `None` if Chromium or its driver is not installed.
-    pub fn open(width: u32, height: u32) -> Option<Self> {
+    /// Returns `None` if Chromium or its driver is not installed, which is reported for this test.
+    pub fn open(test: &str, width: u32, height: u32) -> Option<Self> {
+        let browser = Browser::installed(width, height);
+        if browser.is_none() {
+            Need::Browser.is_missing(test, "there is no chromium or no chromedriver");
+        }
+        browser
+    }
+
+    fn installed(width: u32, height: u32) -> Option<Self> {
         let chromium = Command::new("chromium").arg("--version").output();
         if !chromium.is_ok_and(|outcome| outcome.status.success()) {
             return None;
@@ -69,7 +80,7 @@ impl Browser {
         let browser = Browser {
             client,
             runtime,
-            driver,
+            _driver: Killed(driver),
         };
         // Tests have no time limit of their own.
         let day = Some(Duration::from_secs(86_400));
@@ -105,7 +116,5 @@ impl Browser {
 impl Drop for Browser {
     fn drop(&mut self) {
         let _ = self.runtime.block_on(self.client.clone().close());
-        let _ = self.driver.kill();
-        let _ = self.driver.wait();
     }
 }

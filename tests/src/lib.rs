@@ -24,7 +24,7 @@ pub mod world;
 
 use std::fs::File;
 use std::path::PathBuf;
-use std::process::Command;
+use std::process::{Child, Command};
 
 use serde_json::Value;
 
@@ -88,10 +88,7 @@ pub fn json_lines_of(command: &mut Command) -> Vec<Value> {
     rows.collect()
 }
 
-/// Runs a command.
-///
-/// # Errors
-/// Returns what it was and what it printed if it fails.
+/// Runs a command; the error says what it was and what it printed.
 fn attempt(command: &mut Command) -> Result<(), String> {
     let outcome = command.output();
     let outcome = outcome.map_err(|error| format!("{command:?}: {error}"))?;
@@ -109,6 +106,16 @@ fn locked_folder(name: &str) -> (PathBuf, File) {
     let lock = File::create(folder.with_extension("lock")).unwrap();
     lock.lock().unwrap();
     (folder, lock)
+}
+
+/// A process that is killed when this is dropped, if it still runs.
+struct Killed(Child);
+
+impl Drop for Killed {
+    fn drop(&mut self) {
+        let _ = self.0.kill();
+        let _ = self.0.wait();
+    }
 }
 
 pub fn root() -> PathBuf {

@@ -2,7 +2,7 @@
 
 use std::io::{BufRead, BufReader, Lines};
 use std::path::PathBuf;
-use std::process::{Child, ChildStdout, ExitStatus, Stdio};
+use std::process::{ChildStdout, ExitStatus, Stdio};
 use std::thread::JoinHandle;
 
 use nix::sys::signal::{Signal, kill};
@@ -11,13 +11,14 @@ use serde_json::Value;
 use tempfile::TempDir;
 use transport::GraphName;
 
-use crate::executables;
+use crate::{Killed, executables};
 
 /// A graph that plays a recording in a loop.
 pub struct Live {
-    launcher: Child,
+    /// The nodes end with it.
+    launcher: Killed,
     rows: Lines<BufReader<ChildStdout>>,
-    log: Option<JoinHandle<Vec<String>>>,
+    log: JoinHandle<Vec<String>>,
     _folder: TempDir,
 }
 
@@ -66,9 +67,9 @@ impl Live {
         let said = BufReader::new(launcher.stderr.take().unwrap()).lines();
         let log = std::thread::spawn(move || said.map_while(Result::ok).collect());
         Live {
-            launcher,
+            launcher: Killed(launcher),
             rows,
-            log: Some(log),
+            log,
             _folder: folder,
         }
     }
@@ -93,7 +94,7 @@ impl Live {
 
     /// Process id of the launcher.
     pub fn launcher(&self) -> Pid {
-        Pid::from_raw(self.launcher.id().cast_signed())
+        Pid::from_raw(self.launcher.0.id().cast_signed())
     }
 
     /// Returns the processes that the launcher has started, by executable.
@@ -126,8 +127,9 @@ impl Live {
         let rows = self.rows.by_ref().map(Result::unwrap);
         let last = rows.last().expect("a summary");
         let mut last: Value = serde_json::from_str(&last).unwrap();
-        let said = self.log.take().unwrap().join().unwrap();
-        (self.launcher.wait().unwrap(), last["summary"].take(), said)
+        let said = self.log.join().unwrap();
+        let status = self.launcher.0.wait().unwrap();
+        (status, last["summary"].take(), said)
     }
 
     /// Kills the launcher and all nodes at the same time, as if memory ran out.
@@ -141,8 +143,8 @@ impl Live {
         for (_, pid) in &nodes {
             kill(*pid, Signal::SIGKILL).unwrap();
         }
-        let _ = self.log.take().unwrap().join().unwrap();
-        self.launcher.wait().unwrap();
+        let _ = self.log.join().unwrap();
+        self.launcher.0.wait().unwrap();
         // They are no children of ours, and hold their locks until all their threads have ended.
         while !nodes.iter().all(|(_, pid)| has_ended(*pid)) {
             std::thread::yield_now();
@@ -160,14 +162,6 @@ fn has_ended(pid: Pid) -> bool {
         let stat = std::fs::read_to_string(thread.path().join("stat"));
         stat.map_or(true, |stat| stat.contains(") Z ") || stat.contains(") X "))
     })
-}
-
-impl Drop for Live {
-    fn drop(&mut self) {
-        // After a failed test; the nodes end with the launcher.
-        let _ = self.launcher.kill();
-        let _ = self.launcher.wait();
-    }
 }
 
 /// Lists the files of a graph in shared memory and in this user's temporary folder.

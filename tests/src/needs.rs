@@ -33,23 +33,16 @@ pub enum Need {
 
 impl Need {
     /// Returns its name in `BACKCAST_REQUIRE`.
-    pub fn name(self) -> &'static str {
-        match self {
-            Need::Browser => "browser",
-            Need::Python => "python",
-            Need::Npm => "npm",
-            Need::Namespaces => "namespaces",
-            Need::Overlay => "overlay",
-            Need::Root => "root",
-            Need::Data => "data",
-        }
+    pub fn name(self) -> String {
+        format!("{self:?}").to_lowercase()
     }
 
     fn is_required(self, list: Option<&str>, in_ci: bool) -> bool {
         match list {
-            Some(list) => list
-                .split(',')
-                .any(|name| [self.name(), "all"].contains(&name.trim())),
+            Some(list) => {
+                let mut names = list.split(',').map(str::trim);
+                names.any(|name| name == self.name() || name == "all")
+            }
             None => in_ci && ![Need::Overlay, Need::Root, Need::Data].contains(&self),
         }
     }

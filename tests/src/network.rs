@@ -4,11 +4,12 @@
 //! those of the machine that runs the test.
 
 use std::io::{BufRead, BufReader};
-use std::process::{Child, Command, Stdio};
+use std::process::{Command, Stdio};
 
 use transport::Graph;
 use transport::testing::NodeProcess;
 
+use crate::Killed;
 use crate::needs::Need;
 
 /// Set for a test that runs in a user namespace of its own.
@@ -18,7 +19,7 @@ const INSIDE: &str = "BACKCAST_TEST_INSIDE";
 pub struct Namespace {
     /// Process in the namespace. It ends with the test, which holds the other end of its standard
     /// input.
-    holder: Child,
+    holder: Killed,
 }
 
 /// True if the calling test, named `test`, may make namespaces and is to go on. Otherwise it has
@@ -77,13 +78,15 @@ impl Namespace {
         let output = holder.stdout.take().unwrap();
         BufReader::new(output).read_line(&mut line).unwrap();
         assert_eq!(line, "up\n", "no namespace; is iproute2 installed?");
-        Namespace { holder }
+        Namespace {
+            holder: Killed(holder),
+        }
     }
 
     /// Adds a cable called `name` to another namespace; the ends have these addresses, such as
     /// `10.0.1.1/24`.
     pub fn connect(&self, other: &Namespace, name: &str, ends: [&str; 2]) {
-        let there = other.holder.id();
+        let there = other.holder.0.id();
         self.ip(&format!(
             "link add name {name} type veth peer name {name} netns {there}"
         ));
@@ -117,7 +120,7 @@ impl Namespace {
 
     /// Returns the option by which `nsenter` enters.
     fn place(&self) -> String {
-        format!("--net=/proc/{}/ns/net", self.holder.id())
+        format!("--net=/proc/{}/ns/net", self.holder.0.id())
     }
 
     /// Runs `ip` with these arguments.
@@ -125,12 +128,5 @@ impl Namespace {
         let mut ip = self.command("ip");
         let status = ip.args(arguments.split_whitespace()).status();
         assert!(status.unwrap().success(), "ip {arguments}");
-    }
-}
-
-impl Drop for Namespace {
-    fn drop(&mut self) {
-        let _ = self.holder.kill();
-        let _ = self.holder.wait();
     }
 }

@@ -7,9 +7,6 @@ use crate::{attempt, locked_folder};
 
 /// Returns a Python with these packages, in an environment called `name` in the target folder, once
 /// `imports` can be imported. Concurrent tests wait for the one that makes it.
-///
-/// # Errors
-/// Returns the output of the first command that failed, for example without a network.
 pub fn with(name: &str, packages: &[&str], imports: &str) -> Result<PathBuf, String> {
     let (folder, _lock) = locked_folder(&format!("python_{name}"));
     let python = folder.join("bin/python");

@@ -2,14 +2,14 @@
 
 use std::io::{BufRead, BufReader, Write};
 use std::path::Path;
-use std::process::{Child, ChildStdin, Command, Stdio};
+use std::process::{ChildStdin, Command, Stdio};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, channel};
 use std::time::Duration;
 
 use serde_json::{Value, json};
 
 use crate::needs::Need;
-use crate::python;
+use crate::{Killed, python};
 
 /// Libraries and their versions.
 pub const LIBRARIES: [&str; 3] = [
@@ -27,7 +27,7 @@ const TIMEOUT: Duration = Duration::from_secs(120);
 
 /// A process that executes orders, killed if the test fails.
 pub struct Robot {
-    process: Child,
+    _process: Killed,
     orders: ChildStdin,
     said: Receiver<String>,
     /// Events that no call has returned yet.
@@ -67,7 +67,7 @@ impl Robot {
             }
         });
         let mut robot = Robot {
-            process,
+            _process: Killed(process),
             orders,
             said,
             passed_over: Vec::new(),
@@ -117,12 +117,5 @@ impl Robot {
         let said: Value = serde_json::from_str(&line).unwrap();
         assert_ne!(said["event"], "failed", "{said}");
         said
-    }
-}
-
-impl Drop for Robot {
-    fn drop(&mut self) {
-        let _ = self.process.kill();
-        let _ = self.process.wait();
     }
 }

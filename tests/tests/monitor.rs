@@ -1,12 +1,8 @@
 //! The monitor's page in a browser, with a whole graph behind it.
-#![allow(
-    clippy::unwrap_used,
-    reason = "the lint spares test functions but not what they share"
-)]
+#![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 use std::io::{BufRead, BufReader};
 use std::process::{Child, Stdio};
-use std::thread::JoinHandle;
 
 use nix::sys::signal::{Signal, kill};
 use nix::unistd::Pid;
@@ -17,7 +13,6 @@ use tests::axe;
 use tests::browser::Browser;
 use tests::executables;
 use tests::http::{Site, token_file};
-use tests::needs::Need;
 use tests::recorded::graph_with;
 use tests::world::World;
 
@@ -26,7 +21,6 @@ const TOKEN: &str = "0123456789abcdef";
 /// A graph that plays a recording in a loop, with a monitor.
 struct Graph {
     launcher: Child,
-    log: Option<JoinHandle<()>>,
     url: String,
     _folder: TempDir,
 }
@@ -53,10 +47,9 @@ impl Graph {
             line.split("watch it on ").nth(1).map(str::to_owned)
         });
         // The rest is read as well, or its writers would wait.
-        let log = std::thread::spawn(move || lines.for_each(drop));
+        std::thread::spawn(move || lines.for_each(drop));
         Graph {
             launcher,
-            log: Some(log),
             url: url.unwrap(),
             _folder: folder,
         }
@@ -64,10 +57,8 @@ impl Graph {
 
     fn stop(&mut self) {
         if let Ok(None) = self.launcher.try_wait() {
-            let _ = kill(
-                Pid::from_raw(self.launcher.id().cast_signed()),
-                Signal::SIGINT,
-            );
+            let launcher = Pid::from_raw(self.launcher.id().cast_signed());
+            let _ = kill(launcher, Signal::SIGINT);
             let _ = self.launcher.wait();
         }
     }
@@ -76,9 +67,6 @@ impl Graph {
 impl Drop for Graph {
     fn drop(&mut self) {
         self.stop();
-        if let Some(log) = self.log.take() {
-            let _ = log.join();
-        }
     }
 }
 
@@ -126,9 +114,8 @@ const POSE: &str = "document.getElementById('pose-x').textContent";
 
 #[test]
 fn an_operator_sees_the_graph_and_what_befalls_it() {
-    let Some(browser) = Browser::open(1280, 800) else {
-        let test = "an_operator_sees_the_graph_and_what_befalls_it";
-        Need::Browser.is_missing(test, "there is no chromium or no chromedriver");
+    let test = "an_operator_sees_the_graph_and_what_befalls_it";
+    let Some(browser) = Browser::open(test, 1280, 800) else {
         return;
     };
     let world = World::of("malaga_corridor");
@@ -162,14 +149,12 @@ fn an_operator_sees_the_graph_and_what_befalls_it() {
     browser.wait_until("!document.getElementById('everywhere').disabled");
 
     // The page fits a telephone.
-    let telephone = Browser::open(375, 800).unwrap();
+    let telephone = Browser::open(test, 375, 800).unwrap();
     telephone.visit(&graph.url);
     telephone.wait_until("document.getElementById('verdict').dataset.verdict === 'Unique'");
     assert_eq!(telephone.run("return innerWidth"), 375);
-    assert_eq!(
-        telephone.run("return document.documentElement.scrollWidth"),
-        375
-    );
+    let width = "return document.documentElement.scrollWidth";
+    assert_eq!(telephone.run(width), 375);
     drop(telephone);
 
     // A node that was killed turns red.
@@ -204,8 +189,7 @@ fn an_operator_sees_the_graph_and_what_befalls_it() {
 #[test]
 fn a_recording_is_started_and_stopped_from_the_page() {
     let test = "a_recording_is_started_and_stopped_from_the_page";
-    let Some(browser) = Browser::open(1280, 800) else {
-        Need::Browser.is_missing(test, "there is no chromium or no chromedriver");
+    let Some(browser) = Browser::open(test, 1280, 800) else {
         return;
     };
     let mut graph = Graph::start(&World::of("malaga_corridor"));
@@ -221,11 +205,8 @@ fn a_recording_is_started_and_stopped_from_the_page() {
         let path = "/api/v1/robots/r7/recording";
         site.ask(method, path, &[&token], "").0
     };
-    let nothing = recording(Value::is_object);
-    assert_eq!(
-        nothing,
-        json!({"file": null, "size_mb": null, "refused": null})
-    );
+    let nothing = json!({"file": null, "size_mb": null, "refused": null});
+    assert_eq!(recording(Value::is_object), nothing);
     assert_eq!(ask("POST", "another"), 403);
     assert_eq!(ask("DELETE", TOKEN), 409, "nothing is recorded");
 

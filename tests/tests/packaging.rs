@@ -1,15 +1,13 @@
 //! The Debian package, installed without sources and cargo: in a copy of this machine's root that
 //! is removed with the test.
-#![allow(
-    clippy::unwrap_used,
-    reason = "the lint spares test functions but not what they share"
-)]
+#![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 use std::path::{Path, PathBuf};
-use std::process::{Command, Output, Stdio};
+use std::process::{Command, Stdio};
 
 use serde_json::Value;
 use tests::needs::Need;
+use tests::text_of;
 
 /// Commands of a new user once the package is installed; `$1` is the folder that held the sources,
 /// `$2` the package. The first line that fails ends it.
@@ -71,20 +69,17 @@ exec env --ignore-environment PATH=/usr/sbin:/usr/bin:/sbin:/bin HOME=/home \
     chroot /mnt/root sh -c "$script" sh "$hidden" "/package/$(basename "$package")"
 "#;
 
-fn run(command: &mut Command) -> Output {
-    let output = command.stderr(Stdio::inherit()).output().unwrap();
-    assert!(output.status.success(), "{command:?}: {}", output.status);
-    output
-}
-
 /// Builds the Debian package of the executables of this test run.
 fn package(folder: &Path) -> PathBuf {
     let built = tests::executables::path("backcast").with_file_name("");
     let build = tests::root().join("packaging/build");
-    run(Command::new(build)
-        .arg("--no-compile")
-        .arg(built)
-        .env("CARGO_TARGET_DIR", folder));
+    let mut build = Command::new(build);
+    let _ = text_of(
+        build
+            .arg("--no-compile")
+            .arg(built)
+            .env("CARGO_TARGET_DIR", folder),
+    );
     let files = std::fs::read_dir(folder.join("package")).unwrap();
     let mut files = files.map(|file| file.unwrap().path());
     files
@@ -110,11 +105,9 @@ fn the_package_does_its_work_where_nothing_else_is() {
     let folder = tempfile::tempdir().unwrap();
     let package = package(folder.path());
     let sources = tests::root().canonicalize().unwrap();
-    let output = run(Command::new("unshare")
-        .args(["--mount", "sh", "-c", CLEAN_ROOT, "sh", SCRIPT])
-        .arg(package)
-        .arg(sources.parent().unwrap()));
-    let said = String::from_utf8(output.stdout).unwrap();
+    let mut unshare = Command::new("unshare");
+    unshare.args(["--mount", "sh", "-c", CLEAN_ROOT, "sh", SCRIPT]);
+    let said = text_of(unshare.arg(package).arg(sources.parent().unwrap()));
     let lines: Vec<Value> = said
         .lines()
         .map(|line| serde_json::from_str(line).unwrap_or_else(|_| panic!("{said}")))
@@ -158,15 +151,16 @@ fn the_graph_of_the_launch_file_is_sound() {
     let built = tests::executables::path("backcast").with_file_name("");
     let built = format!("path: {}/", built.display());
     std::fs::write(&file, text.replace("path: ", &built)).unwrap();
-    run(tests::executables::backcast().arg("check").arg(&file));
+    let check = || {
+        let mut command = tests::executables::backcast();
+        command.arg("check").arg(&file);
+        command
+    };
+    let _ = text_of(&mut check());
     // Arguments that are invalid in ROS are rejected by the gateway itself.
     let wrong = text
         .replace("__ns:=", "__namespace:=")
         .replace("path: ", &built);
     std::fs::write(&file, wrong).unwrap();
-    let refused = tests::executables::backcast()
-        .arg("check")
-        .arg(&file)
-        .output();
-    assert!(!refused.unwrap().status.success());
+    assert!(!check().output().unwrap().status.success());
 }

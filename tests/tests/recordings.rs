@@ -1,9 +1,6 @@
 //! Recordings that the graph makes: they stay the same when they are played and recorded again, and
 //! report what they have lost.
-#![allow(
-    clippy::unwrap_used,
-    reason = "the lint spares test functions but not what they share"
-)]
+#![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 use std::io::{BufRead, BufReader};
 use std::path::{Path, PathBuf};
@@ -12,12 +9,12 @@ use std::process::Stdio;
 use nix::sys::signal::{Signal, kill};
 use nix::unistd::Pid;
 use recording::write::{Packing, RecordingWriter};
-use recording::{Kind, Message, Recording};
+use recording::{Kind, Recording};
 use tempfile::TempDir;
 use tests::executables;
 use tests::recorded::{graph, messages, record};
 use tests::schemas::assert_follows;
-use tests::world::World;
+use tests::world::{World, scans_of};
 
 /// Topics whose messages contain durations or times of sending.
 const TIMED: [&str; 4] = [
@@ -73,6 +70,7 @@ fn a_recording_of_a_recording_is_the_same_message_for_message() {
     assert!(!first["/pose"].is_empty() && first["/pose"].len() < first["/scan"].len());
     // The recording itself comes back too, except for data that the graph does not carry: the
     // height of the laser and the last bits of angles.
+    assert_evaluates_alike(&imported, &world.recording());
     let original = messages(&world.recording());
     for topic in ["/scan", "/odom", "/ground_truth", "/map", "/tf_static"] {
         assert_eq!(first[topic].len(), original[topic].len(), "{topic}");
@@ -86,6 +84,25 @@ fn a_recording_of_a_recording_is_the_same_message_for_message() {
     ] {
         assert_eq!(first[topic].len(), original["/scan"].len(), "{topic}");
     }
+}
+
+/// Checks that scans, true poses and map are those of the recording that was played.
+fn assert_evaluates_alike(recorded: &Path, played: &Path) {
+    let ranges = |path: &Path| -> Vec<Vec<f32>> {
+        let scans = scans_of(path).into_iter();
+        scans.map(|scan| scan.ranges).collect()
+    };
+    assert_eq!(ranges(recorded), ranges(played));
+    let [recorded, played] = [recorded, played].map(|path| Recording::open(path).unwrap());
+    let [found, truths] = [&recorded, &played].map(|of| of.ground_truths().unwrap());
+    assert_eq!(found.len(), truths.len());
+    for (stamp, truth) in truths {
+        // The yaw is rounded to 2⁻⁴⁰ rad.
+        let is_near = truth.pose.is_within(found[&stamp].pose, 0.0, 1e-12);
+        assert!(is_near, "{stamp}");
+    }
+    let [found, map] = [&recorded, &played].map(|of| of.map().unwrap().unwrap());
+    assert_eq!(found.cells, map.cells);
 }
 
 #[test]
@@ -238,36 +255,4 @@ fn who_looks_on_and_stands_still_for_a_while_misses_nothing() {
         is_of_scan
     };
     assert_eq!(printed.lines().filter(of_scan).count(), 37, "{printed}");
-}
-
-#[test]
-fn what_the_graph_recorded_evaluates_as_the_original() {
-    let world = World::of("malaga_corridor");
-    let folder = TempDir::new().unwrap();
-    let path = folder.path().join("a.mcap");
-    record(&world.recording(), &world.map(), &path);
-    let ranges = |path: &Path| -> Vec<Vec<f32>> {
-        let recording = Recording::open(path).unwrap();
-        let scans =
-            recording
-                .records_of(&[Kind::Scan])
-                .map(|record| match record.unwrap().message {
-                    Message::Scan(scan) => scan.ranges,
-                    other => panic!("asked for scans, got {:?}", other.kind()),
-                });
-        scans.collect()
-    };
-    assert_eq!(ranges(&path), ranges(&world.recording()));
-    let truths = |path: &Path| Recording::open(path).unwrap().ground_truths().unwrap();
-    let (original, recorded) = (truths(&world.recording()), truths(&path));
-    assert_eq!(original.len(), recorded.len());
-    for (stamp, truth) in original {
-        // The yaw is rounded to 2⁻⁴⁰ rad.
-        assert!(
-            truth.pose.is_within(recorded[&stamp].pose, 0.0, 1e-12),
-            "{stamp}"
-        );
-    }
-    let map = |path: &Path| Recording::open(path).unwrap().map().unwrap().unwrap();
-    assert_eq!(map(&path).cells, map(&world.recording()).cells);
 }

@@ -1,9 +1,6 @@
 //! The repository's graph under faults: docs/reliability.md names these tests. A fault lasts for a
 //! fixed time; the recovery is waited for without a limit.
-#![allow(
-    clippy::unwrap_used,
-    reason = "the lint spares test functions but not what they share"
-)]
+#![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 use std::collections::BTreeSet;
 use std::thread::sleep;
@@ -21,6 +18,14 @@ fn name(tag: &str) -> String {
     format!("r{}-{tag}", std::process::id())
 }
 
+/// Stops the graph in order, checks that no pose was wrong, and returns the log.
+fn stop(live: Live) -> Vec<String> {
+    let (status, summary, said) = live.stop();
+    assert!(status.success(), "{status}: {said:#?}");
+    assert_eq!(summary["pose"]["unique_wrong"], 0, "{summary}");
+    said
+}
+
 #[test]
 fn a_node_that_hangs_is_ended_and_started_again() {
     let mut live = Live::start(&name("hang"), "    health_check_timeout: 2\n");
@@ -34,10 +39,7 @@ fn a_node_that_hangs_is_ended_and_started_again() {
         // Poses that were in progress may be among them.
         live.poses(20);
     }
-    let (status, summary, said) = live.stop();
-    assert!(status.success(), "{status}");
-    assert_eq!(summary["pose"]["unique_wrong"], 0, "{summary}");
-    let said = said.join("\n");
+    let said = stop(live).join("\n");
     for executable in ["accumulator", "tracker"] {
         let expected = format!("{executable} sent no heartbeat for");
         assert!(said.contains(&expected), "{said}");
@@ -69,9 +71,7 @@ fn nodes_that_are_killed_again_and_again_end_nothing_and_leave_nothing() {
             live.poses(6);
         }
     }
-    let (status, summary, said) = live.stop();
-    assert!(status.success(), "{status}: {said:#?}");
-    assert_eq!(summary["pose"]["unique_wrong"], 0, "{summary}");
+    stop(live);
     assert_eq!(files_of(&name), [""; 0]);
 }
 
@@ -129,9 +129,7 @@ fn full_shared_memory_ends_nothing_and_is_reported() {
     drop((health, graph));
     live.poses(10);
     assert_eq!(live.nodes(), before, "no process was started anew");
-    let (status, summary, _) = live.stop();
-    assert!(status.success(), "{status}");
-    assert_eq!(summary["pose"]["unique_wrong"], 0, "{summary}");
+    stop(live);
 }
 
 #[test]
@@ -160,9 +158,7 @@ fn a_disk_that_is_full_for_a_while_delays_no_pose_and_spoils_no_recording() {
     drop((health, graph));
     let later = live.poses(20);
     assert_eq!(live.nodes(), before, "no process was started anew");
-    let (status, summary, _) = live.stop();
-    assert!(status.success(), "{status}");
-    assert_eq!(summary["pose"]["unique_wrong"], 0, "{summary}");
+    stop(live);
     // Messages that came while the disk was full waited in memory.
     let recording = Recording::open("/mnt/drive.mcap").unwrap();
     assert!(recording.damage_error().is_none(), "it has been ended");
@@ -191,9 +187,7 @@ fn a_node_that_stands_still_for_ten_seconds_goes_on_where_the_others_are() {
         while live.pose()["sent_ns"].as_i64().unwrap() < goes_on {}
         assert_eq!(live.node(executable), stopped, "it was not started anew");
     }
-    let (status, summary, _) = live.stop();
-    assert!(status.success(), "{status}");
-    assert_eq!(summary["pose"]["unique_wrong"], 0, "{summary}");
+    stop(live);
 }
 
 /// Writes until the file system is full.

@@ -4,10 +4,7 @@
 //! Tables of options and exit codes are written from `--help` by
 //! `BACKCAST_ACCEPT=1 cargo test --release -p tests --test documents`, and the figures by
 //! `backcast bench docs`.
-#![allow(
-    clippy::unwrap_used,
-    reason = "the lint spares test functions but not what they share"
-)]
+#![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 mod figures;
 mod links;

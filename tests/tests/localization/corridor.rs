@@ -26,6 +26,7 @@ fn the_graph_answers_as_the_engine_alone() {
         &world.map(),
         scans.len(),
         &[],
+        &[],
     );
 
     let vote_search = world.vote_search(Prior::None);
@@ -43,13 +44,13 @@ fn the_graph_answers_as_the_engine_alone() {
 fn with_known_headings_the_graph_finds_the_same_places() {
     let world = World::of("malaga_corridor");
     let scans = world.scans();
-    let arguments = ["--heading-from", "truth"];
     let answers = answers::of_graph(
         "heading",
         &world.recording(),
         &world.map(),
         scans.len(),
-        &arguments,
+        &["--heading-from", "truth"],
+        &[],
     );
     let truths = world.truths();
     for (header, hypotheses) in &answers.hypotheses {

@@ -6,8 +6,7 @@ use std::path::{Path, PathBuf};
 
 use geometry::{Covariance, Pose};
 use messages::{
-    Hypothesis, InitialPose, InitialPoseKind, MapSet, PoseHeader, Stamp, TrackReason, TrackState,
-    topic,
+    Hypothesis, InitialPose, InitialPoseKind, MapSet, Stamp, TrackReason, TrackState, topic,
 };
 use serde_json::Value;
 use tempfile::TempDir;
@@ -43,17 +42,17 @@ fn the_maps_of_a_set_are_searched_as_the_tools_do_and_the_robots_own_is_shown() 
 ",
     );
     let isolated = Isolated::new("set");
-    let robot = Robot::start_on(&isolated, Some(file.clone()));
+    let mut robot = Robot::start_on(&isolated, Some(file.clone()));
     let served = robot.graph.subscriber::<topic::Maps>().unwrap();
     let shown = robot.graph.subscriber::<topic::Map>().unwrap();
     let found = robot.graph.subscriber::<topic::Hypotheses>().unwrap();
     let names: Vec<(u64, String)> = wait_for(&robot.graph, &served, |header, items| {
         let set = MapSet::read(header, items).unwrap();
-        let maps = set.maps.iter();
-        Some(
-            maps.map(|(map, _)| (map.map_id, map.name.to_string()))
-                .collect(),
-        )
+        let names = set
+            .maps
+            .iter()
+            .map(|(map, _)| (map.map_id, map.name.to_string()));
+        Some(names.collect())
     });
     let name = |map_id: u64| {
         let named = names.iter().find(|(id, _)| *id == map_id);
@@ -69,10 +68,7 @@ fn the_maps_of_a_set_are_searched_as_the_tools_do_and_the_robots_own_is_shown() 
     let mut unique = 0;
     let mut searched = 0;
     for counter in 0..scans as u64 {
-        let scan = robot.send(counter);
-        let pose: PoseHeader = wait_for(&robot.graph, &robot.poses, |pose, _| {
-            (pose.from_scan == 1 && pose.stamp == scan.stamp).then_some(*pose)
-        });
+        let (pose, _) = robot.pose_after(&robot.send(counter));
         if pose.is_unique() {
             assert_eq!(name(pose.map_id), "corridor");
             let (found, truth) = (Pose::from(pose.map_from_laser), truth(&robot, counter));
@@ -123,7 +119,7 @@ transitions:
         let text = floors.replace("SIDE", side);
         let at = |text: &str, key: &str, value: f64| text.replace(key, &value.to_string());
         let (_folder, file) = maps(&at(&at(&text, "X", start.x + 0.5), "Y", start.y));
-        let robot = Robot::start_on(&isolated, Some(file));
+        let mut robot = Robot::start_on(&isolated, Some(file));
         let said = robot.graph.publisher::<topic::InitialPoseTopic>().unwrap();
         let header = InitialPose {
             kind: InitialPoseKind::Believed as u64,
@@ -136,11 +132,7 @@ transitions:
         // For later scans there is no odometry: they may be on either floor.
         let scans = [3, 1][number];
         for counter in 0..scans {
-            let scan = robot.send(counter);
-            last = Some(wait_for(&robot.graph, &robot.poses, |pose, words| {
-                let words = String::from_utf8_lossy(words).into_owned();
-                (pose.from_scan == 1 && pose.stamp == scan.stamp).then_some((*pose, words))
-            }));
+            last = Some(robot.pose_after(&robot.send(counter)));
         }
         let (pose, words) = last.unwrap();
         let found = (

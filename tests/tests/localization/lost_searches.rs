@@ -3,7 +3,7 @@
 
 use std::path::PathBuf;
 
-use messages::{HealthHeader, ScanHeader, TrackState, topic};
+use messages::{HealthHeader, PoseHeader, ScanHeader, TrackState, topic};
 use nix::sys::signal::{Signal, kill};
 use tests::executables;
 use tests::world::{World, as_the_graph_has_it};
@@ -16,7 +16,7 @@ pub(super) struct Robot {
     /// Maps that are served instead of the recording's own.
     maps: Option<PathBuf>,
     scans: Publisher<topic::Scan>,
-    pub(super) poses: Subscriber<topic::Tracked>,
+    poses: Subscriber<topic::Tracked>,
     requests: Subscriber<topic::Attention>,
     health: Subscriber<topic::Health>,
     nodes: Vec<(&'static str, NodeProcess)>,
@@ -79,15 +79,16 @@ impl Robot {
         header
     }
 
-    /// Waits for the tracker's state after this scan.
-    fn state_after(&self, scan: &ScanHeader) -> u32 {
-        wait_for(&self.graph, &self.poses, |pose, _| {
-            (pose.from_scan == 1 && pose.stamp == scan.stamp).then_some(pose.state)
+    /// Waits for the tracker's pose after this scan, and its words.
+    pub(super) fn pose_after(&self, scan: &ScanHeader) -> (PoseHeader, String) {
+        wait_for(&self.graph, &self.poses, |pose, words| {
+            let words = String::from_utf8_lossy(words).into_owned();
+            (pose.from_scan == 1 && pose.stamp == scan.stamp).then_some((*pose, words))
         })
     }
 
     /// Stops the graph, receivers first.
-    pub(super) fn stop(mut self) {
+    pub(super) fn stop(&mut self) {
         for (_, node) in self.nodes.drain(..).rev() {
             node.stop();
         }
@@ -115,10 +116,13 @@ fn check(victim: &'static str) {
     robot.wait_for_request(&first);
     wait_until_ready(&robot.graph, victim);
     let mut scan = robot.send(1);
-    assert_eq!(robot.state_after(&first), TrackState::Searching as u32);
+    assert_eq!(
+        robot.pose_after(&first).0.state,
+        TrackState::Searching as u32
+    );
     // The new process has no scan to search until it is sent one.
     for counter in 2.. {
-        if robot.state_after(&scan) != TrackState::Searching as u32 {
+        if robot.pose_after(&scan).0.state != TrackState::Searching as u32 {
             break;
         }
         scan = robot.send(counter);
@@ -127,9 +131,7 @@ fn check(victim: &'static str) {
     wait_for_health(&robot.graph, &robot.health, |report| {
         report.node.as_str() == "tracker"
     });
-    for (_, node) in robot.nodes.drain(..).rev() {
-        node.stop();
-    }
+    robot.stop();
     let is_last = |report: &HealthHeader| {
         report.node.as_str() == "tracker" && report.state == messages::NodeState::Stopped as u32
     };

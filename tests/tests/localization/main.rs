@@ -1,8 +1,5 @@
 //! Localization by the engine, the tools and the graph, in drawn, simulated and recorded buildings.
-#![allow(
-    clippy::unwrap_used,
-    reason = "the lint spares test functions but not what they share"
-)]
+#![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 mod any_sensor;
 mod broken_recordings;
@@ -12,6 +9,5 @@ mod floors;
 mod hard_cases;
 mod lost_searches;
 mod many_maps;
-mod side_by_side;
 mod starting_over;
 mod tracking;

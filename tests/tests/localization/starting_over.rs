@@ -5,16 +5,13 @@ use geometry::{Covariance, Pose};
 use messages::{InitialPose, InitialPoseKind, PoseHeader, Stamp, TrackReason, TrackState, topic};
 use tests::world::World;
 use transport::Publisher;
-use transport::testing::{Isolated, wait_for};
+use transport::testing::Isolated;
 
 use super::lost_searches::Robot;
 
 /// Sends the recording's scan of this number and returns the tracker's pose.
 fn pose_of(robot: &Robot, counter: u64) -> PoseHeader {
-    let scan = robot.send(counter);
-    wait_for(&robot.graph, &robot.poses, |pose, _| {
-        (pose.from_scan == 1 && pose.stamp == scan.stamp).then_some(*pose)
-    })
+    robot.pose_after(&robot.send(counter)).0
 }
 
 /// Returns the true pose of the laser at the recording's scan of this number.
@@ -55,7 +52,7 @@ fn drive_until_unique(robot: &Robot, mut counter: u64) -> u64 {
 #[test]
 fn a_tracker_that_starts_over_forgets_its_pose_and_finds_the_robot_again() {
     let isolated = Isolated::new("start-over");
-    let robot = Robot::start(&isolated);
+    let mut robot = Robot::start(&isolated);
     let said = robot.graph.publisher().unwrap();
     let next = drive_until_unique(&robot, 0);
     // A hint that waits for a scan is dropped with it.
@@ -75,7 +72,7 @@ fn a_tracker_that_starts_over_forgets_its_pose_and_finds_the_robot_again() {
 #[test]
 fn a_hint_is_believed_where_a_scan_confirms_it_and_what_is_said_to_be_believed_at_once() {
     let isolated = Isolated::new("believe");
-    let robot = Robot::start(&isolated);
+    let mut robot = Robot::start(&isolated);
     let said = robot.graph.publisher().unwrap();
     let across = truth(&robot, 0).then(Pose::new(0.0, 0.0, std::f64::consts::FRAC_PI_2));
     say(&said, InitialPoseKind::Hint, across);

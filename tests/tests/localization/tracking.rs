@@ -20,28 +20,14 @@ type Track = Vec<(String, f64, f64, f64, f64)>;
 fn by_tools(recording: &Path, map: &Path) -> Track {
     let folder = TempDir::new().unwrap();
     let mut command = executables::backcast();
-    command.args([
-        "evaluate",
-        "--sequence",
-        "--starts",
-        "1",
-        "--kidnaps",
-        "0",
-        "--map",
-    ]);
+    command.args("evaluate --sequence --starts 1 --kidnaps 0 --map".split(' '));
     command.arg(map).arg("--trajectories").arg(folder.path());
     let _ = tests::text_of(command.arg(recording));
     let text = std::fs::read_to_string(folder.path().join("recording.tum")).unwrap();
     let line = |line: &str| {
         let words: Vec<&str> = line.split(' ').collect();
-        let number = |i: usize| words[i].parse().unwrap();
-        (
-            words[0].to_owned(),
-            number(1),
-            number(2),
-            number(6),
-            number(7),
-        )
+        let [x, y, z, w] = [1, 2, 6, 7].map(|i| words[i].parse().unwrap());
+        (words[0].to_owned(), x, y, z, w)
     };
     text.lines().map(line).collect()
 }
@@ -187,18 +173,14 @@ fn drives_of_other_robots_are_tracked() {
         assert_eq!(found["wrong_starts"], 0, "{file}: {found}");
         assert_eq!(found["losses"], 0, "{file}: {found}");
         assert_eq!(found["kidnaps_wrong"], 0, "{file}: {found}");
-        assert!(
-            found["right"]["5"].as_f64().unwrap() >= right,
-            "{file}: {found}"
-        );
+        let within = found["right"]["5"].as_f64().unwrap();
+        assert!(within >= right, "{file}: {found}");
         assert!(found["rms_m"].as_f64().unwrap() <= 0.03, "{file}: {found}");
     }
     // A drawn map lacks doors, and its bays repeat.
     let drawn = folder.join("guardian_drawn_map.mcap");
-    let found = figures(
-        &drawn,
-        &["--starts", "20", "--kidnaps", "0", "--every", "2"],
-    );
+    let options = ["--starts", "20", "--kidnaps", "0", "--every", "2"];
+    let found = figures(&drawn, &options);
     assert_eq!(found["wrong_starts"], 0, "{found}");
     assert!(found["right"]["20"].as_f64().unwrap() >= 0.8, "{found}");
 }

@@ -40,6 +40,13 @@ fn features(options: &[&str]) -> BTreeSet<String> {
     text.lines().map(str::to_owned).collect()
 }
 
+/// Returns the names of the dependencies in the build that the options choose.
+pub(crate) fn names(options: &[&str]) -> BTreeSet<String> {
+    let lines = features(options);
+    let names = lines.iter().filter_map(|line| line.split(' ').next());
+    names.map(str::to_owned).collect()
+}
+
 /// Otherwise each of the three compiles its own iceoryx2 and tokio, which takes minutes.
 #[test]
 fn a_run_what_it_starts_and_the_tests_use_the_same_dependencies() {
@@ -61,28 +68,11 @@ fn a_run_what_it_starts_and_the_tests_use_the_same_dependencies() {
 /// A robot that runs a graph needs neither the tools nor the crates they link.
 #[test]
 fn the_launcher_alone_links_nothing_of_the_tools() {
-    let names = |options: &[&str]| -> BTreeSet<String> {
-        let lines = features(&[&["-p", "backcast", "--edges", "no-dev"], options].concat());
-        let names = lines.iter().filter_map(|line| line.split(' ').next());
-        names.map(str::to_owned).collect()
-    };
-    let of_tools = [
-        "bench",
-        "evaluation",
-        "indicatif",
-        "offline",
-        "plots",
-        "quick-junit",
-        "ratatui",
-        "recording",
-        "recording_tools",
-        "resvg",
-        "rusqlite",
-        "serialport",
-        "simulation",
-        "tungstenite",
-    ];
-    let of_tools = BTreeSet::from(of_tools.map(str::to_owned));
+    let names =
+        |options: &[&str]| names(&[&["-p", "backcast", "--edges", "no-dev"], options].concat());
+    let of_tools = "bench evaluation indicatif offline plots quick-junit ratatui recording \
+                    recording_tools resvg rusqlite serialport simulation tungstenite";
+    let of_tools: BTreeSet<String> = of_tools.split(' ').map(str::to_owned).collect();
     let (alone, with_tools) = (names(&["--no-default-features"]), names(&[]));
     assert!(alone.contains("launcher"), "{alone:?}");
     let missing: Vec<_> = of_tools.difference(&with_tools).collect();

@@ -2,8 +2,8 @@
 
 use std::collections::BTreeSet;
 use std::path::Path;
-use std::process::Command;
 
+use crate::builds::names;
 use crate::workspace::{files, metadata};
 
 #[test]
@@ -39,23 +39,9 @@ fn every_dependency_is_used() {
 /// Checks the dependencies of a program that uses the engine as a library.
 #[test]
 fn the_engine_as_a_library_brings_no_command_line_and_no_shared_memory() {
-    let options = [
-        "--edges", "normal", "--prefix", "none", "--format", "{p}", "--locked",
-    ];
-    let mut tree = Command::new(env!("CARGO"));
-    tree.args(["tree", "--package", "backcast-engine"])
-        .args(options);
-    let text = tests::text_of(tree.current_dir(tests::root()));
-    let names: BTreeSet<&str> = text
-        .lines()
-        .filter_map(|line| line.split(' ').next())
-        .collect();
-    assert!(
-        names.contains("backcast-engine") && names.contains("nalgebra"),
-        "{text}"
-    );
-    let foreign = names
-        .iter()
-        .filter(|name| name.starts_with("clap") || name.starts_with("iceoryx2"));
-    assert_eq!(foreign.collect::<Vec<_>>(), Vec::<&&str>::new());
+    let names = names(&["--package", "backcast-engine", "--edges", "normal"]);
+    let has_all = names.contains("backcast-engine") && names.contains("nalgebra");
+    assert!(has_all, "{names:?}");
+    let is_foreign = |name: &&String| name.starts_with("clap") || name.starts_with("iceoryx2");
+    assert_eq!(names.iter().find(is_foreign), None);
 }

@@ -23,14 +23,6 @@ fn nodes_never_depend_on_nodes() {
 }
 
 #[test]
-fn foxglove_is_linked_by_its_server_alone() {
-    for (name, dependencies) in dependencies() {
-        let may = name == "foxglove_server";
-        assert!(may || !dependencies.contains("foxglove"), "{name}");
-    }
-}
-
-#[test]
 fn each_crate_has_the_name_of_its_folder() {
     let names: BTreeSet<String> = dependencies().into_keys().collect();
     let folders: BTreeSet<String> = folders("nodes")
@@ -46,24 +38,19 @@ fn each_crate_has_the_name_of_its_folder() {
 }
 
 #[test]
-fn zenoh_is_linked_only_where_machines_are_joined() {
+fn what_takes_long_to_build_is_linked_only_where_it_is_needed() {
     for (name, dependencies) in dependencies() {
-        let may = ZENOH_NODES.contains(&name.as_str()) || name == "zenoh_session";
+        let is_among = |names: &[&str]| names.contains(&name.as_str());
+        let has = |library: &str| dependencies.contains(library);
+        // It joins machines.
+        let may = is_among(&ZENOH_NODES) || name == "zenoh_session";
         assert!(may || !links_zenoh(&dependencies), "{name}");
-    }
-}
-
-#[test]
-fn only_what_is_asked_over_a_network_has_a_runtime_for_it() {
-    for (name, dependencies) in dependencies() {
-        // Foxglove's server runs on the runtime that its node gives it.
+        let may = name == "foxglove_server";
+        assert!(may || !has("foxglove"), "{name}");
+        // A runtime for what is asked over a network. Foxglove's server runs on the runtime that
+        // its node gives it.
         let others = ["dashboard", "foxglove_server", "shared_features", "tests"];
-        let may = ZENOH_NODES.contains(&name.as_str()) || others.contains(&name.as_str());
-        for library in ["tokio", "axum"] {
-            assert!(
-                may || !dependencies.contains(library),
-                "{name} links {library}"
-            );
-        }
+        let may = is_among(&ZENOH_NODES) || is_among(&others);
+        assert!(may || !has("tokio") && !has("axum"), "{name}");
     }
 }

@@ -7,41 +7,23 @@ use syn::visit::Visit;
 
 use crate::workspace::{files, imports, known, names};
 
-#[test]
-fn the_engine_knows_no_process_socket_clock_or_file() {
-    let allowed = BTreeSet::from(["geometry", "messages"].map(str::to_owned));
-    assert_eq!(known("engine"), allowed);
-    is_pure("common/engine/src");
-}
+/// Pure crates, each with the crates under `common` that it may link. The parsers of the
+/// simulation's options are those of all commands.
+const PURE: [(&str, &[&str]); 5] = [
+    ("engine", &["geometry", "messages"]),
+    ("network_payload", &["messages"]),
+    ("ros", &["geometry", "map", "messages"]),
+    ("sick", &[]),
+    ("simulation", &["command_line", "geometry", "map"]),
+];
 
 #[test]
-fn the_codecs_of_lasers_know_no_socket_clock_or_file_and_nothing_of_ours() {
-    assert_eq!(known("sick"), BTreeSet::new());
-    is_pure("common/sick/src");
-}
-
-#[test]
-fn the_simulation_knows_no_engine_process_clock_or_file() {
-    // The parsers of its options are those of all commands.
-    let allowed = BTreeSet::from(["command_line", "geometry", "map"].map(str::to_owned));
-    assert_eq!(known("simulation"), allowed);
-    is_pure("common/simulation/src");
-}
-
-#[test]
-fn messages_of_ros_know_no_process_socket_clock_or_file() {
-    let allowed = BTreeSet::from(["geometry", "map", "messages"].map(str::to_owned));
-    assert_eq!(known("ros"), allowed);
-    is_pure("common/ros/src");
-}
-
-#[test]
-fn what_crosses_a_network_is_read_without_one() {
-    assert_eq!(
-        known("network_payload"),
-        BTreeSet::from(["messages".to_owned()])
-    );
-    is_pure("common/network_payload/src");
+fn pure_crates_know_no_process_socket_clock_or_file() {
+    for (name, allowed) in PURE {
+        let allowed = allowed.iter().map(|other| (*other).to_owned());
+        assert_eq!(known(name), allowed.collect(), "{name}");
+        is_pure(&format!("common/{name}/src"));
+    }
 }
 
 /// Modules of the standard library that reach outside a function's arguments.

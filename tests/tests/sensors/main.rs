@@ -1,8 +1,5 @@
 //! Lasers and third-party recordings, up to the graph.
-#![allow(
-    clippy::unwrap_used,
-    reason = "the lint spares test functions but not what they share"
-)]
+#![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 mod doctor;
 mod lasers;

@@ -67,7 +67,7 @@ fn answers_at(watcher: &Machine<'_>, laser: &Machine<'_>, engine: &Machine<'_>) 
 fn assert_same(found: &[Answer]) {
     static ONE: LazyLock<Vec<Answer>> = LazyLock::new(|| {
         let world = world();
-        answers::of_graph("one", &world.recording(), &world.map(), SCANS, &[]).hypotheses
+        answers::of_graph("one", &world.recording(), &world.map(), SCANS, &[], &[]).hypotheses
     });
     assert_eq!((found.len(), ONE.len()), (SCANS, SCANS));
     for ((header, poses), (expected_header, expected_poses)) in found.iter().zip(&*ONE) {

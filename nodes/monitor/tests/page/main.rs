@@ -14,14 +14,6 @@ use tests::needs::Need;
 const LOST: Scene = Scene::Tracked(TrackState::Lost);
 const UNIQUE: Scene = Scene::Tracked(TrackState::Unique);
 
-fn browser(test: &str, width: u32, height: u32) -> Option<Browser> {
-    let browser = Browser::open(width, height);
-    if browser.is_none() {
-        Need::Browser.is_missing(test, "there is no chromium or no chromedriver");
-    }
-    browser
-}
-
 /// Waits until the card shows this word.
 fn wait_for(browser: &Browser, word: &str) {
     let is_said = format!("document.getElementById('verdict').textContent === '{word}'");
@@ -85,7 +77,7 @@ const HIT: [u8; 3] = [15, 148, 136];
 #[test]
 fn while_several_places_fit_none_of_them_leads() {
     let test = "while_several_places_fit_none_of_them_leads";
-    let Some(browser) = browser(test, 1280, 800) else {
+    let Some(browser) = Browser::open(test, 1280, 800) else {
         return;
     };
     let stage = Stage::new("ambiguous");
@@ -131,7 +123,7 @@ fn while_several_places_fit_none_of_them_leads() {
 #[test]
 fn the_card_says_where_how_sure_and_how_exact() {
     let test = "the_card_says_where_how_sure_and_how_exact";
-    let Some(browser) = browser(test, 1280, 800) else {
+    let Some(browser) = Browser::open(test, 1280, 800) else {
         return;
     };
     let stage = Stage::new("unique");
@@ -201,13 +193,13 @@ fn kind(browser: &Browser) -> String {
 #[test]
 fn the_moments_when_it_was_lost_can_be_looked_at() {
     let test = "the_moments_when_it_was_lost_can_be_looked_at";
-    let Some(browser) = browser(test, 1280, 800) else {
+    let Some(browser) = Browser::open(test, 1280, 800) else {
         return;
     };
     let stage = Stage::new("lost");
     // The pose was lost before this page was opened.
     stage.show(UNIQUE);
-    let early = Browser::open(1280, 800).unwrap();
+    let early = Browser::open(test, 1280, 800).unwrap();
     early.visit(&stage.url());
     wait_for(&early, "Unique");
     stage.show(LOST);
@@ -247,7 +239,7 @@ fn the_moments_when_it_was_lost_can_be_looked_at() {
 #[test]
 fn without_scans_all_turns_grey_and_says_what_to_check() {
     let test = "without_scans_all_turns_grey_and_says_what_to_check";
-    let Some(browser) = browser(test, 1280, 800) else {
+    let Some(browser) = Browser::open(test, 1280, 800) else {
         return;
     };
     let stage = Stage::new("silent");
@@ -300,7 +292,7 @@ fn everybody_can_read_and_reach_it() {
         Err(why) => return Need::Npm.is_missing(test, &why),
     };
     for width in [1440, 320] {
-        let Some(browser) = browser(test, width, 900) else {
+        let Some(browser) = Browser::open(test, width, 900) else {
             return;
         };
         let stage = Stage::new(&format!("axe{width}"));

@@ -1,13 +1,14 @@
 //! Information for users who do not watch the page closely: causes and notifications.
 
 use serde_json::{Value, json};
+use tests::browser::Browser;
 
 use crate::stage::{Scene, Stage};
-use crate::{LOST, UNIQUE, browser, click, wait_for};
+use crate::{LOST, UNIQUE, click, wait_for};
 
 #[test]
 fn the_first_cause_is_named_first() {
-    let Some(browser) = browser("the_first_cause_is_named_first", 1280, 800) else {
+    let Some(browser) = Browser::open("the_first_cause_is_named_first", 1280, 800) else {
         return;
     };
     let stage = Stage::new("causes");
@@ -58,7 +59,7 @@ fn the_first_cause_is_named_first() {
 #[test]
 fn the_card_knows_the_graph_and_not_the_tracker_alone() {
     let test = "the_card_knows_the_graph_and_not_the_tracker_alone";
-    let Some(browser) = browser(test, 1280, 800) else {
+    let Some(browser) = Browser::open(test, 1280, 800) else {
         return;
     };
     let stage = Stage::new("situation");
@@ -121,7 +122,7 @@ fn the_card_knows_the_graph_and_not_the_tracker_alone() {
 #[test]
 fn who_wishes_is_notified_when_it_is_lost_and_once() {
     let test = "who_wishes_is_notified_when_it_is_lost_and_once";
-    let Some(browser) = browser(test, 1280, 800) else {
+    let Some(browser) = Browser::open(test, 1280, 800) else {
         return;
     };
     let stage = Stage::new("notify");
