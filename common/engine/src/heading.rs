@@ -8,7 +8,7 @@ mod config;
 use std::collections::VecDeque;
 
 use geometry::{Pose, wrap_angle};
-use messages::{FrameName, GroundTruth, Odometry, ScanHeader};
+use messages::{GroundTruth, Odometry, ScanHeader};
 
 pub use config::{HeadingConfig, HeadingFrom};
 
@@ -70,25 +70,12 @@ pub enum HeadingError {
 /// Recent odometry and ground truth.
 #[derive(Debug, Clone)]
 pub struct History {
-    odometry: VecDeque<Driven>,
-    truths: VecDeque<Truth>,
+    odometry: VecDeque<Odometry>,
+    truths: VecDeque<GroundTruth>,
     /// Largest number of readings of each kind.
     most: usize,
     /// Added to the stamps of odometry, in nanoseconds.
     delay_ns: i64,
-}
-
-#[derive(Debug, Clone, Copy)]
-struct Driven {
-    measured_ns: i64,
-    odom_from_child: Pose,
-    child_frame: FrameName,
-}
-
-#[derive(Debug, Clone, Copy)]
-struct Truth {
-    measured_ns: i64,
-    yaw: f64,
 }
 
 impl History {
@@ -105,21 +92,15 @@ impl History {
 
     /// Adds an odometry sample.
     pub fn on_odometry(&mut self, odometry: &Odometry) {
-        let driven = Driven {
-            measured_ns: odometry.stamp.measured_ns.saturating_add(self.delay_ns),
-            odom_from_child: odometry.odom_from_child.into(),
-            child_frame: odometry.child_frame,
-        };
-        push(&mut self.odometry, self.most, driven);
+        let mut delayed = *odometry;
+        let measured_ns = &mut delayed.stamp.measured_ns;
+        *measured_ns = measured_ns.saturating_add(self.delay_ns);
+        push(&mut self.odometry, self.most, delayed);
     }
 
     /// Adds a true pose.
     pub fn on_truth(&mut self, truth: &GroundTruth) {
-        let truth = Truth {
-            measured_ns: truth.stamp.measured_ns,
-            yaw: truth.map_from_laser.yaw,
-        };
-        push(&mut self.truths, self.most, truth);
+        push(&mut self.truths, self.most, *truth);
     }
 
     /// Returns the pose of the laser by odometry at the time of `scan`. As for headings, a laser
@@ -132,20 +113,40 @@ impl History {
         scan: &ScanHeader,
         max_age_ns: i64,
     ) -> Result<Pose, HeadingError> {
-        let odometry = odometry_of(scan, self, max_age_ns)?;
-        Ok(odometry
-            .odom_from_child
-            .then(odometry.child_from_laser(scan)))
+        let odometry = self.odometry_of(scan, max_age_ns)?;
+        Ok(Pose::from(odometry.odom_from_child).then(child_from_laser(odometry, scan)))
+    }
+
+    fn truth_of(&self, scan: &ScanHeader) -> Result<f64, HeadingError> {
+        let scan_ns = scan.stamp.measured_ns;
+        let mut newest_first = self.truths.iter().rev();
+        newest_first
+            .find(|truth| truth.stamp.measured_ns == scan_ns)
+            .map(|truth| truth.map_from_laser.yaw)
+            .ok_or(HeadingError::NoTruth { scan_ns })
+    }
+
+    /// Selects by time of measurement, not of arrival, because a recording played in a loop starts
+    /// again.
+    fn odometry_of(&self, scan: &ScanHeader, allowed_ns: i64) -> Result<&Odometry, HeadingError> {
+        let scan_ns = scan.stamp.measured_ns;
+        let before = self.odometry.iter();
+        let newest = before
+            .filter(|odometry| odometry.stamp.measured_ns <= scan_ns)
+            .max_by_key(|odometry| odometry.stamp.measured_ns)
+            .ok_or(HeadingError::NoOdometry { scan_ns })?;
+        let age_ns = scan_ns.saturating_sub(newest.stamp.measured_ns);
+        match age_ns > allowed_ns {
+            true => Err(HeadingError::OldOdometry { age_ns, allowed_ns }),
+            false => Ok(newest),
+        }
     }
 }
 
-impl Driven {
-    fn child_from_laser(&self, scan: &ScanHeader) -> Pose {
-        if self.child_frame == scan.frame || scan.mount_known != 1 {
-            Pose::IDENTITY
-        } else {
-            scan.base_from_laser.into()
-        }
+fn child_from_laser(odometry: &Odometry, scan: &ScanHeader) -> Pose {
+    match odometry.child_frame == scan.frame || scan.mount_known != 1 {
+        true => Pose::IDENTITY,
+        false => scan.base_from_laser.into(),
     }
 }
 
@@ -174,44 +175,15 @@ impl HeadingSource {
         match *self {
             HeadingSource::Searched => Ok(None),
             HeadingSource::Fixed(heading) => Ok(Some(heading)),
-            HeadingSource::Truth => truth_of(scan, history).map(Some),
+            HeadingSource::Truth => history.truth_of(scan).map(Some),
             HeadingSource::Odometry { offset, max_age_ns } => {
-                let odometry = odometry_of(scan, history, max_age_ns)?;
-                let mount = odometry.child_from_laser(scan).yaw;
+                let odometry = history.odometry_of(scan, max_age_ns)?;
+                let mount = child_from_laser(odometry, scan).yaw;
                 let yaw = odometry.odom_from_child.yaw;
                 Ok(Some(wrap_angle(yaw + mount + offset)))
             }
         }
     }
-}
-
-fn truth_of(scan: &ScanHeader, history: &History) -> Result<f64, HeadingError> {
-    let scan_ns = scan.stamp.measured_ns;
-    let mut newest_first = history.truths.iter().rev();
-    newest_first
-        .find(|truth| truth.measured_ns == scan_ns)
-        .map(|truth| truth.yaw)
-        .ok_or(HeadingError::NoTruth { scan_ns })
-}
-
-/// Selects by time of measurement, not of arrival, because a recording played in a loop starts
-/// again.
-fn odometry_of(
-    scan: &ScanHeader,
-    history: &History,
-    allowed_ns: i64,
-) -> Result<Driven, HeadingError> {
-    let scan_ns = scan.stamp.measured_ns;
-    let before = history.odometry.iter();
-    let newest = before
-        .filter(|odometry| odometry.measured_ns <= scan_ns)
-        .max_by_key(|odometry| odometry.measured_ns)
-        .ok_or(HeadingError::NoOdometry { scan_ns })?;
-    let age_ns = scan_ns.saturating_sub(newest.measured_ns);
-    if age_ns > allowed_ns {
-        return Err(HeadingError::OldOdometry { age_ns, allowed_ns });
-    }
-    Ok(*newest)
 }
 
 /// Adds a reading to the last ones, oldest first, of which at most this many are kept.

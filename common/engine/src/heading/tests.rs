@@ -1,8 +1,7 @@
 use bytemuck::Zeroable;
-use messages::{Pose2, Stamp};
+use messages::{FrameName, Pose2, Stamp};
 
 use super::*;
-use crate::joined::MotionConfig;
 
 const KEPT: usize = 5;
 const SECOND_NS: i64 = 1_000_000_000;
@@ -107,25 +106,15 @@ fn a_recording_that_starts_again_finds_its_early_odometry() {
 fn odometry_that_is_too_old_or_too_new_is_refused() {
     let history = history(&[(10, 0.1)]);
     let refused = |measured_ns| {
-        BY_ODOMETRY
-            .heading_of(&scan(measured_ns), &history)
-            .unwrap_err()
+        let found = BY_ODOMETRY.heading_of(&scan(measured_ns), &history);
+        found.unwrap_err()
     };
-    assert!(matches!(
-        refused(9),
-        HeadingError::NoOdometry { scan_ns: 9 }
-    ));
-    assert_eq!(
-        heading(BY_ODOMETRY, &scan(10 + SECOND_NS), &history),
-        0.1 + 0.5
-    );
-    assert!(matches!(
-        refused(11 + SECOND_NS),
-        HeadingError::OldOdometry {
-            age_ns: 1_000_000_001,
-            allowed_ns: SECOND_NS
-        }
-    ));
+    assert_eq!(refused(9), HeadingError::NoOdometry { scan_ns: 9 });
+    let limit = scan(10 + SECOND_NS);
+    assert_eq!(heading(BY_ODOMETRY, &limit, &history), 0.1 + 0.5);
+    let (age_ns, allowed_ns) = (SECOND_NS + 1, SECOND_NS);
+    let old = HeadingError::OldOdometry { age_ns, allowed_ns };
+    assert_eq!(refused(11 + SECOND_NS), old);
     // Times from corrupt input must not overflow.
     refused(i64::MIN);
     let ancient = self::history(&[(i64::MIN, 0.0)]);
@@ -178,13 +167,9 @@ fn the_laser_sits_on_what_the_odometry_is_about() {
     let pose = history.odom_from_laser(&mounted, 2).unwrap();
     let expected = Pose::new(3.0, 4.5, std::f64::consts::FRAC_PI_2 + 0.25);
     assert!(pose.is_within(expected, 1e-12, 1e-12), "{pose:?}");
-    assert_eq!(
-        history.odom_from_laser(&mounted, 1),
-        Err(HeadingError::OldOdometry {
-            age_ns: 2,
-            allowed_ns: 1
-        })
-    );
+    let (age_ns, allowed_ns) = (2, 1);
+    let old = HeadingError::OldOdometry { age_ns, allowed_ns };
+    assert_eq!(history.odom_from_laser(&mounted, 1), Err(old));
 }
 
 #[test]
@@ -194,10 +179,7 @@ fn the_truth_has_exactly_the_time_of_the_scan() {
     history.on_truth(&truth(20, 0.2));
     assert_eq!(heading(HeadingSource::Truth, &scan(10), &history), 0.1);
     let refused = HeadingSource::Truth.heading_of(&scan(11), &history);
-    assert!(matches!(
-        refused,
-        Err(HeadingError::NoTruth { scan_ns: 11 })
-    ));
+    assert_eq!(refused, Err(HeadingError::NoTruth { scan_ns: 11 }));
 }
 
 #[test]
