@@ -42,6 +42,7 @@ pub struct Report {
 
 /// Distance within which places are one spot in two headings, in metres.
 const SAME_SPOT_M: f64 = 1.0;
+const ONE_SPOT: &str = "on one spot";
 
 impl Report {
     /// Returns the report after odometry moved the robot by this step since the last scan, with its
@@ -71,10 +72,9 @@ impl Report {
 
     /// Returns the reason in words, and advice if there is any.
     pub fn words(&self) -> String {
-        let reason = self.reason_in_words();
-        match self.advice() {
-            "" => reason,
-            advice => format!("{reason}: {advice}"),
+        match self.reason_and_advice() {
+            (reason, "") => reason,
+            (reason, advice) => format!("{reason}: {advice}"),
         }
     }
 
@@ -84,23 +84,40 @@ impl Report {
         words.rsplit_once(": ").unwrap_or((words, ""))
     }
 
-    fn reason_in_words(&self) -> String {
+    fn reason_and_advice(&self) -> (String, &'static str) {
+        const MOVE: &str = "drive a few metres or turn on the spot, or mark a region";
+        let is_doubtful = self.state == TrackState::Doubtful;
         let fit = format!("fit {:.2}", self.score.clamp(0.0, 1.0));
         let since = format!("since {:.0} m", self.since_m);
-        match (self.reason, self.state) {
-            (TrackReason::NoScan, TrackState::Doubtful) => "no scan for some metres".into(),
-            (TrackReason::NoScan, _) => "waiting for the first scan".into(),
-            (TrackReason::NoMap, _) => "waiting for a map".into(),
-            (TrackReason::NoSearch, _) => "waiting for the first search of the map".into(),
-            (TrackReason::OnePlace, _) => format!("one place, {fit}, {since}"),
-            (TrackReason::SeveralPlaces, _) => {
-                format!("{} places fit, {}, {since}", self.rivals, self.apart())
+        match self.reason {
+            TrackReason::NoScan if is_doubtful => {
+                let advice = "is the laser running and connected?";
+                ("no scan for some metres".into(), advice)
             }
-            (TrackReason::TooEarly, _) => format!("one place leads, {fit}, {since}"),
-            (TrackReason::PoorFit, _) => format!("only {fit}, {since}"),
-            (TrackReason::OdometryJump, _) => format!("laser and odometry disagree, {fit}"),
-            (TrackReason::AnotherPlace, _) => format!("scans fit better elsewhere, {since}"),
-            (TrackReason::NoPlace, _) => "no place on the map fits".into(),
+            TrackReason::NoScan => ("waiting for the first scan".into(), ""),
+            TrackReason::NoMap => ("waiting for a map".into(), ""),
+            TrackReason::NoSearch => ("waiting for the first search of the map".into(), ""),
+            TrackReason::OnePlace => (format!("one place, {fit}, {since}"), ""),
+            TrackReason::SeveralPlaces => {
+                let apart = self.apart();
+                let reason = format!("{} places fit, {apart}, {since}", self.rivals);
+                match apart == ONE_SPOT {
+                    true => (reason, "turn, or drive a few metres"),
+                    false => (reason, MOVE),
+                }
+            }
+            TrackReason::TooEarly => (format!("one place leads, {fit}, {since}"), MOVE),
+            TrackReason::PoorFit if is_doubtful => {
+                let advice = "is the view blocked, or the map out of date?";
+                (format!("only {fit}, {since}"), advice)
+            }
+            TrackReason::PoorFit => (format!("only {fit}, {since}"), MOVE),
+            TrackReason::OdometryJump => {
+                let advice = "is the laser mirrored, frozen or covered?";
+                (format!("laser and odometry disagree, {fit}"), advice)
+            }
+            TrackReason::AnotherPlace => (format!("scans fit better elsewhere, {since}"), MOVE),
+            TrackReason::NoPlace => ("no place on the map fits".into(), "is it this map?"),
         }
     }
 
@@ -108,33 +125,9 @@ impl Report {
         let (nearest, farthest) = self.apart_m;
         match self.rivals {
             _ if self.maps > 1 => format!("on {} maps", self.maps),
-            _ if farthest <= SAME_SPOT_M => "on one spot".into(),
+            _ if farthest <= SAME_SPOT_M => ONE_SPOT.into(),
             0..=2 => format!("{farthest:.0} m apart"),
             _ => format!("{nearest:.0} to {farthest:.0} m apart"),
-        }
-    }
-
-    fn advice(&self) -> &'static str {
-        match self.reason {
-            TrackReason::SeveralPlaces if self.maps <= 1 && self.apart_m.1 <= SAME_SPOT_M => {
-                "turn, or drive a few metres"
-            }
-            TrackReason::SeveralPlaces | TrackReason::TooEarly | TrackReason::AnotherPlace => {
-                "drive a few metres or turn on the spot, or mark a region"
-            }
-            TrackReason::PoorFit if self.state == TrackState::Doubtful => {
-                "is the view blocked, or the map out of date?"
-            }
-            TrackReason::PoorFit => "drive a few metres or turn on the spot, or mark a region",
-            TrackReason::NoPlace => "is it this map?",
-            TrackReason::OdometryJump => "is the laser mirrored, frozen or covered?",
-            TrackReason::NoScan if self.state == TrackState::Doubtful => {
-                "is the laser running and connected?"
-            }
-            TrackReason::NoScan
-            | TrackReason::NoMap
-            | TrackReason::NoSearch
-            | TrackReason::OnePlace => "",
         }
     }
 }
@@ -165,12 +158,12 @@ mod tests {
     fn reason_and_advice_are_found_again_in_the_words() {
         let states = (0..4).filter_map(TrackState::from_code);
         for (state, reason) in states.flat_map(|state| {
-            let reasons = (0..9).filter_map(TrackReason::from_code);
+            let reasons = (0..10).filter_map(TrackReason::from_code);
             reasons.map(move |reason| (state, reason))
         }) {
             let report = report(state, reason);
-            let why = report.reason_in_words();
-            assert_eq!(Report::split(&report.words()), (&*why, report.advice()));
+            let (why, advice) = report.reason_and_advice();
+            assert_eq!(Report::split(&report.words()), (&*why, advice));
         }
     }
 
