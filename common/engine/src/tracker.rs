@@ -13,12 +13,12 @@
 use std::sync::Arc;
 
 use geometry::{Covariance, Pose};
-use messages::{Hypothesis, Name};
+use messages::Name;
 
 use crate::EngineError;
 use crate::fit::Ends;
 use crate::joined::{ByOdometry, JoinConfig, Joiner, Kept, LeftOut, MotionConfig, TimedScan};
-use crate::localizer::{Answer, Localizer, Workspace};
+use crate::localizer::{Localizer, Workspace};
 use crate::observation::Observation;
 use crate::peaks::Target;
 use crate::tracking::{Candidate, Need, PlaceTracker, Report, Seen, TrackingConfig};
@@ -220,7 +220,7 @@ impl Tracker {
             let found = self
                 .localizer
                 .locate_unless(&mut self.workspace, scan, None, stop)?;
-            Ok(found.map(|answer| candidates(answer, target)))
+            Ok(found.map(|answer| Candidate::of_places(answer.places, target, target)))
         };
         let found = match need {
             Need::Nothing => None,
@@ -305,18 +305,6 @@ impl Tracker {
     pub fn reset(&mut self) {
         self.state = State::new(&self.settings);
     }
-}
-
-/// Candidates of a search. They pass through the messages of the graph, so that both round alike.
-fn candidates(answer: Answer<'_>, target: Target) -> Vec<Candidate> {
-    let places = answer.places.places.iter();
-    let found: Vec<(u32, Hypothesis)> = places
-        .map(|place| (place.map, place.hypothesis(0, target)))
-        .collect();
-    let (mut candidates, verdict) = (Vec::new(), Some(answer.places.verdict));
-    let found = found.iter().map(|(map, hypothesis)| (*map, hypothesis));
-    Candidate::fill(&mut candidates, verdict, found, target);
-    candidates
 }
 
 #[cfg(test)]

@@ -61,7 +61,6 @@ pub fn run(graph: &Graph, config: &Config) -> Result<(), TrackerError> {
         before: None,
         initial: config.initial_pose.map(Initial::of_option),
         last: None,
-        candidates: Vec::new(),
         gaps: GapCounter::default(),
         last_refusal: String::new(),
         last_state: None,
@@ -108,7 +107,6 @@ struct Node {
     /// Initial pose received, to be used with the next scan.
     initial: Option<Initial>,
     last: Option<Tracked>,
-    candidates: Vec<Candidate>,
     gaps: GapCounter,
     last_refusal: String,
     last_state: Option<TrackState>,
@@ -222,18 +220,15 @@ impl Node {
         // A believed initial pose is the pose at this scan.
         let moved = if is_set { Some(Pose::IDENTITY) } else { moved };
         let seen = self.worlds.seen(&self.config.fit);
-        let need = self.tracker.begin(&seen, scan.stamp.measured_ns, moved);
-        let of = match need {
+        let of = match self.tracker.begin(&seen, scan.stamp.measured_ns, moved) {
             Need::Nothing => None,
             Need::ThisScan => {
                 self.asked = None;
+                self.ask(inputs, scan.stamp)?;
                 Some(scan.stamp)
             }
             Need::EarlierScan => self.asked.take(),
         };
-        if need == Need::ThisScan {
-            self.ask(inputs, scan.stamp)?;
-        }
         match of {
             None => self.finish(inputs, scan, None, start),
             Some(of) => {
@@ -273,12 +268,12 @@ impl Node {
         // If the search was refused or covered other maps, its result is unknown.
         let answer = of.and_then(|of| self.answers.of(of));
         let answer = answer.filter(|answer| answer.searched == worlds.searched());
-        let known = answer.into_iter().flat_map(|answer| &answer.found);
-        let known = known.filter_map(|found| Some((worlds.number(found.map_id)?, found)));
-        let verdict = answer.and_then(|answer| answer.verdict);
-        Candidate::fill(&mut self.candidates, verdict, known, target);
-        let found = answer.map(|_| &self.candidates[..]);
-        self.tracker.finish(&seen, found);
+        let found = answer.map(|answer| {
+            let found = answer.found.iter();
+            let known = found.filter_map(|found| Some((worlds.number(found.map_id)?, *found)));
+            Candidate::of_hypotheses(answer.verdict, known, target)
+        });
+        self.tracker.finish(&seen, found.as_deref());
         if self.tracker.asks_ahead() {
             self.asked = Some(scan.stamp);
             self.ask(inputs, scan.stamp)?;

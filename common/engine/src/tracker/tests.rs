@@ -3,11 +3,10 @@ use std::f64::consts::{FRAC_PI_2, PI};
 use super::*;
 use crate::localizer::Settings;
 use crate::occupancy_map::Map;
-use crate::scan::Scan;
+use crate::testing::{RESOLUTION_M, scan_from};
 use messages::TrackState;
 
 const SIDES: (usize, usize) = (120, 80);
-const RESOLUTION_M: f64 = 0.1;
 const PERIOD_NS: i64 = 100_000_000;
 
 /// A hall of 12 m × 8 m with a store room in a corner; no turn and no mirror makes it look alike.
@@ -45,13 +44,7 @@ fn ranges_at(laser: Pose) -> Vec<f32> {
 
 fn scan(ranges: &[f32], stamp_ns: i64, base_from_laser: Option<Pose>) -> TimedScan<'_> {
     TimedScan {
-        scan: Scan {
-            angle_min: -FRAC_PI_2,
-            angle_increment: 1f64.to_radians(),
-            range_min_m: 0.0,
-            range_max_m: 30.0,
-            ranges,
-        },
+        scan: scan_from(-FRAC_PI_2, 1f64.to_radians(), ranges),
         stamp_ns,
         time_increment_s: 0.0,
         base_from_laser,
@@ -167,14 +160,12 @@ fn scans_that_are_rejected_change_nothing() {
     tracker.update(&[front, rear]).unwrap();
     let mut rejected = |scans: &[TimedScan<'_>]| tracker.update(scans).unwrap_err();
     assert_eq!(rejected(&[front]), lasers(1, 2));
-    let error = rejected(&[front, rear]);
-    let (laser, stamp_ns, later_ns) = (0, front.stamp_ns, 0);
     let same = EngineError::StampOrder {
-        laser,
-        stamp_ns,
-        later_ns,
+        laser: 0,
+        stamp_ns: front.stamp_ns,
+        later_ns: 0,
     };
-    assert_eq!(error, same);
+    assert_eq!(rejected(&[front, rear]), same);
     let lost = Pose::new(f64::NAN, 0.0, 0.0);
     assert!(tracker.add_odometry(0, lost).is_err());
     tracker.reset();

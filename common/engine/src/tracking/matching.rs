@@ -98,7 +98,7 @@ impl ScanMatcher {
 
 /// Makes a map of the ends of a scan, with cells of this many metres.
 fn around(ends: &Ends, resolution_m: f64) -> Result<DistanceField, EngineError> {
-    let ends = || near_ends(ends);
+    let ends = || ends.ends.iter().map(point).filter(is_near);
     let reach = ends().fold(1.0, |reach: f64, (x, y)| reach.max(x.abs()).max(y.abs()));
     let half = reach as usize + 2;
     let side = 2 * half;
@@ -115,11 +115,6 @@ fn around(ends: &Ends, resolution_m: f64) -> Result<DistanceField, EngineError> 
     DistanceField::new(frame, (side, side), &occupancy, CellRules::default())
 }
 
-/// Positions of the near beam ends, in cells in the target frame.
-fn near_ends(ends: &Ends) -> impl Iterator<Item = (f64, f64)> {
-    ends.ends.iter().map(point).filter(is_near)
-}
-
 /// Share of the near ends in the total weight, at least 0.1, so that a match of a tenth of the
 /// beams does not count as one of all.
 fn near_share(ends: &Ends) -> f64 {
@@ -128,6 +123,7 @@ fn near_share(ends: &Ends) -> f64 {
     (near / ends.weight).max(0.1)
 }
 
+/// Position of an end, in cells in the target frame.
 fn point(end: &End) -> (f64, f64) {
     let (x, y) = end.from;
     let (dx, dy) = end.towards;

@@ -97,9 +97,8 @@ pub struct PlaceTracker {
     needs_search: bool,
     /// Hint for the next scan.
     expected: Option<Hint>,
-    /// A hint that competes with the believed place, and the path since it was given; the next
-    /// search decides.
-    tried: Option<(Hint, DrivenPath)>,
+    /// A hint that competes with the believed place; the next search decides.
+    tried: Option<Hint>,
 }
 
 impl PlaceTracker {
@@ -146,14 +145,13 @@ impl PlaceTracker {
     pub fn expect(&mut self, at: (u32, Pose), covariance: Covariance) {
         let hint = Hint::new(at, covariance);
         let is_near = |place: &Place| hint.is_near((place.map, place.pose));
-        if self.believed().is_some_and(is_near) {
+        if self.places.believed().is_some_and(is_near) {
             (self.expected, self.tried) = (None, None);
             return;
         }
         let leads = self.places.all().first();
         let is_leading = leads.is_some_and(|place| place.is_expected && is_near(place));
-        let tried = self.tried.map(|(hint, _)| hint);
-        let mut under_way = self.expected.into_iter().chain(tried);
+        let mut under_way = self.expected.into_iter().chain(self.tried);
         if !is_leading && !under_way.any(|other| hint.is_near((other.map, other.at.0))) {
             self.expected = Some(hint);
         }
@@ -167,8 +165,9 @@ impl PlaceTracker {
         covariance: Covariance,
     ) {
         self.start_over();
-        let id = self.places.start_at(seen, (map, (pose, covariance.into())));
-        self.belief.believe(id);
+        let at = (map, (pose, covariance.into()));
+        self.places.start_at(seen, at);
+        self.belief.trust();
     }
 
     /// Takes the next scan, as seen on each of the maps, by map number, and the motion of the
@@ -178,7 +177,7 @@ impl PlaceTracker {
     /// # Panics
     /// If there is no map.
     pub fn begin(&mut self, seen: &[Seen<'_>], stamp_ns: i64, moved: Option<Pose>) -> Need {
-        if self.expected.is_some() && self.belief.place().is_none() {
+        if self.expected.is_some() && self.places.believed.is_none() {
             let expected = self.expected;
             self.start_over();
             self.expected = expected;
@@ -199,21 +198,11 @@ impl PlaceTracker {
         // There is no motion before the first scan.
         let step = moved.or(is_first.then_some(Pose::IDENTITY));
         self.asks_ahead = false;
-        self.since_key.add(step);
-        self.since_scan.add(step);
-        let mut is_due = false;
-        if let Some((path, left)) = &mut self.ahead {
-            path.add(step);
-            *left = left.saturating_sub(1);
-            is_due = *left == 0;
-        }
-        if let Some((_, path)) = &mut self.tried {
-            path.add(step);
-        }
+        let is_due = self.go_on(step);
         if self.is_blank {
             return Need::Nothing;
         }
-        if self.belief.place().is_none()
+        if self.places.believed.is_none()
             && let Some(hint) = self.expected.take()
         {
             self.places.expect(seen, hint);
@@ -222,19 +211,17 @@ impl PlaceTracker {
             return Need::ThisScan;
         }
         let path = std::mem::take(&mut self.since_scan);
-        let was_doubtful = self.belief.doubt(&self.places).is_some();
+        let was_doubtful = self.places.doubt().is_some();
         let is_lost_sight = self.has_lost_sight(&path);
         if is_lost_sight {
             self.places.forget();
         }
-        if let Some(id) = self.belief.place() {
-            self.places.follow(id, seen, (&path, &self.since_key));
-            let hint = self.expected.take();
-            if let Some(hint) = hint.filter(|hint| self.places.may_be_at(hint, seen, id)) {
-                self.tried = Some((hint, DrivenPath::default()));
-            }
+        self.places.follow(seen, (&path, &self.since_key));
+        let hint = self.expected.take();
+        if let Some(hint) = hint.filter(|hint| self.places.may_be_at(hint, seen)) {
+            self.tried = Some(hint);
         }
-        let is_suspicious = self.belief.doubt(&self.places).is_some();
+        let is_suspicious = self.places.doubt().is_some();
         let has_entered = self.has_entered();
         let is_new = (is_suspicious && !was_doubtful) || is_lost_sight || has_entered;
         let is_open = self.tried.is_some() && !self.belief.is_unique();
@@ -250,14 +237,24 @@ impl PlaceTracker {
         }
     }
 
-    fn believed(&self) -> Option<&Place> {
-        self.belief.of(&self.places)
+    /// Appends a step to all paths; returns true if the search that was requested ahead counts now.
+    fn go_on(&mut self, step: Option<Pose>) -> bool {
+        self.since_key.add(step);
+        self.since_scan.add(step);
+        if let Some(hint) = &mut self.tried {
+            hint.since.add(step);
+        }
+        self.ahead.as_mut().is_some_and(|(path, left)| {
+            path.add(step);
+            *left = left.saturating_sub(1);
+            *left == 0
+        })
     }
 
     /// True if the believed place has entered a transition with this scan. The robot may stop
     /// there, and be on the other map before it drives on.
     fn has_entered(&mut self) -> bool {
-        let is_in = self.believed().is_some_and(|place| {
+        let is_in = self.places.believed().is_some_and(|place| {
             let at = (place.map, place.pose);
             let mut transitions = self.transitions.iter();
             transitions.any(|transition| other_side(transition, at, place.covariance).is_some())
@@ -268,15 +265,16 @@ impl PlaceTracker {
     /// True if the robot is far enough from the last key scan, by odometry or by the fits of the
     /// scans.
     fn is_far(&self) -> bool {
+        let believed = self.places.believed();
         self.places.is_empty()
             || self.since_key.is_far(&self.config)
-            || self.believed().is_some_and(|place| place.novelty >= 1.0)
+            || believed.is_some_and(|place| place.novelty >= 1.0)
     }
 
     /// True if the best place moved so far, or in an unknown way, that more than one place is
     /// possible.
     fn has_lost_sight(&self, path: &DrivenPath) -> bool {
-        let best = self.believed().or(self.places.all().first());
+        let best = self.places.believed().or(self.places.all().first());
         best.is_some_and(|place| place.is_blind_after(path, self.config.odometry_error))
     }
 
@@ -292,31 +290,25 @@ impl PlaceTracker {
             let path = std::mem::take(&mut self.since_key);
             let due = self.ahead.take_if(|(_, left)| *left == 0);
             let was_searched = self.needs_search || due.is_some();
-            match (due, found) {
-                (_, None) => {}
-                (Some((since, _)), Some(found)) => self.places.take_ahead(seen, &since, found),
-                (None, Some(found)) => self.places.take(seen, found),
-            }
             let tried = self.tried.take_if(|_| was_searched);
-            if found.is_some() {
+            if let Some(found) = found {
+                let since = due.map(|(since, _)| since);
+                self.places.take(seen, found, since.as_ref());
                 self.keys_since_search = 0;
-                if let (Some((hint, path)), Some(id)) = (tried, self.belief.place()) {
-                    let hint = hint.after(&path, self.config.odometry_error);
-                    self.places.expect_beside(hint, seen, id);
+                if let Some(hint) = tried {
+                    let hint = hint.moved(self.config.odometry_error);
+                    self.places.expect_beside(hint, seen);
                 }
             }
             self.belief.search_ended(self.needs_search, found.is_some());
-            let seen = (seen, &self.transitions[..]);
-            let mut believed = self.belief.place();
-            self.places.weigh(seen, &path, &mut believed);
-            self.belief.follow(believed);
+            self.places.weigh(seen, &self.transitions, &path);
             self.keys_since_search += 1;
             if let Some(only) = found.and_then(|found| self.start(found)) {
-                let id = self.places.start_at(seen.0, (only.map, only.at()));
-                self.belief.believe(id);
+                self.places.start_at(seen, (only.map, only.at()));
+                self.belief.trust();
             }
         }
-        self.belief.conclude(&self.places, self.is_key);
+        self.belief.conclude(&mut self.places, self.is_key);
         let is_due = self.is_key && self.keys_since_search >= CHECKED_EVERY;
         self.asks_ahead =
             self.ahead.is_none() && self.belief.is_unique() && (is_due || self.tried.is_some());
@@ -327,7 +319,7 @@ impl PlaceTracker {
 
     /// Place at which a tracker without knowledge starts by a single scan.
     fn start<'a>(&self, found: &'a [Candidate]) -> Option<&'a Candidate> {
-        let may = self.config.start == Start::Believe && self.belief.knows_nothing();
+        let may = self.config.start == Start::Believe && !self.belief.was_unique;
         found.iter().find(|candidate| may && candidate.is_only)
     }
 

@@ -9,7 +9,7 @@ use nalgebra::{Matrix3, Rotation2, SymmetricEigen};
 use super::driven_path::DrivenPath;
 use super::limits::MAX;
 use super::seen::{Fitted, with_map_error};
-use crate::peaks::Target;
+use crate::peaks::{Places, Target};
 
 /// A place found by a search for one scan.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -31,7 +31,7 @@ pub struct Candidate {
 const LOOSEST_M: f64 = 0.3;
 
 impl Candidate {
-    fn of(map: u32, hypothesis: &Hypothesis, target: Target) -> Self {
+    fn of(map: u32, hypothesis: Hypothesis, target: Target) -> Self {
         let laser = hypothesis.map_from_laser.into();
         let pose = target.from_laser(laser);
         Candidate {
@@ -43,17 +43,26 @@ impl Candidate {
         }
     }
 
-    /// Fills in the candidates with the most votes from the places that a search found, which come
+    /// Returns the candidates among the places that a search in this process found, as poses of
+    /// frame `of`. They pass through the messages of the graph, so that both round alike.
+    #[must_use]
+    pub fn of_places(places: &Places, of: Target, target: Target) -> Vec<Self> {
+        let found = places.places.iter();
+        let found = found.map(|place| (place.map, place.hypothesis(0, of)));
+        Candidate::of_hypotheses(Some(places.verdict), found, target)
+    }
+
+    /// Returns the candidates with the most votes among the places that a search found, which come
     /// best first, each with the number of its map. Few are kept because some places fit any scan
     /// well by chance, and each of them must be distinguished from the true one.
-    pub fn fill<'a>(
-        candidates: &mut Vec<Self>,
+    #[must_use]
+    pub fn of_hypotheses(
         verdict: Option<Verdict>,
-        found: impl Iterator<Item = (u32, &'a Hypothesis)>,
+        found: impl Iterator<Item = (u32, Hypothesis)>,
         target: Target,
-    ) {
-        candidates.clear();
-        candidates.extend(found.map(|(map, hypothesis)| Candidate::of(map, hypothesis, target)));
+    ) -> Vec<Self> {
+        let found = found.map(|(map, hypothesis)| Candidate::of(map, hypothesis, target));
+        let mut candidates: Vec<Self> = found.collect();
         if let Some(best) = candidates.first_mut() {
             best.is_only = verdict == Some(Verdict::Unique);
         }
@@ -61,6 +70,7 @@ impl Candidate {
         candidates.truncate(MAX);
         let best = candidates.first().map_or(0, |best| best.votes);
         candidates.retain(|candidate| 2 * candidate.votes >= best);
+        candidates
     }
 
     /// Pose and covariance, in the form that places use.

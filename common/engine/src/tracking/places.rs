@@ -5,7 +5,7 @@ mod found;
 mod hint;
 
 use geometry::Pose;
-use messages::Transition;
+use messages::{TrackReason, Transition};
 use nalgebra::Matrix3;
 
 use super::TrackingConfig;
@@ -49,6 +49,17 @@ struct Best<'a> {
 }
 
 impl Best<'_> {
+    /// Evidence of a key scan, at most `cap`, against a place with this score on this map. Score
+    /// that the maps may leave out does not count.
+    fn against(&self, at: (u32, f64), cap: f64) -> f64 {
+        self.behind(at).min(explained(self.score).min(cap))
+    }
+
+    /// Does the same without the cap of a key scan.
+    fn behind(&self, (map, score): (u32, f64)) -> f64 {
+        lead(self.score, score + self.left_out(map)).max(0.0) / LEAD_SCALE
+    }
+
     /// Score that the true place, on the map with this number, may lack because a drawn map leaves
     /// things out. It follows from the map of the best place, and from this one if it differs.
     fn left_out(&self, map: u32) -> f64 {
@@ -64,15 +75,15 @@ impl Best<'_> {
 }
 
 /// The places where the robot may be.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 pub(super) struct Places {
     config: TrackingConfig,
     kept: Vec<Place>,
+    /// Id of the believed place.
+    pub(super) believed: Option<u32>,
     /// Each with the number of its map.
     candidates: Vec<(u32, Fitted)>,
-    /// True for each candidate that is at a place already kept.
-    is_known: Vec<bool>,
-    next_id: u32,
+    last_id: u32,
     key_scans: u32,
     /// Log weight of "nowhere"; that of the best place is subtracted at each key scan.
     nowhere: f64,
@@ -86,14 +97,7 @@ impl Places {
     pub(super) fn new(config: TrackingConfig) -> Self {
         Places {
             config,
-            kept: Vec::new(),
-            candidates: Vec::new(),
-            is_known: Vec::new(),
-            next_id: 0,
-            key_scans: 0,
-            nowhere: 0.0,
-            was_searched: false,
-            expected: None,
+            ..Places::default()
         }
     }
 
@@ -106,35 +110,37 @@ impl Places {
         &self.kept
     }
 
-    pub(super) fn get(&self, id: u32) -> Option<&Place> {
+    /// The believed place, if it is still kept.
+    pub(super) fn believed(&self) -> Option<&Place> {
+        let id = self.believed?;
         self.kept.iter().find(|place| place.id == id)
     }
 
-    /// Keeps a single place, on the map with this number, at which a scan was taken; returns its
-    /// id.
+    /// Reason why the last scan contradicts the believed place.
+    pub(super) fn doubt(&self) -> Option<TrackReason> {
+        self.believed()?.doubt
+    }
+
+    /// Keeps a single place, on the map with this number, at which a scan was taken, and believes
+    /// it.
     pub(super) fn start_at(
         &mut self,
         seen: &[Seen<'_>],
         (map, predicted): (u32, (Pose, Matrix3<f64>)),
-    ) -> u32 {
+    ) {
         let fitted = seen[map as usize].settle(predicted);
-        let id = self.new_id();
-        self.kept = vec![Place::born(id, (map, &fitted), 0.0)];
+        self.kept.clear();
         self.key_scans = 1;
         self.nowhere = -SELDOM;
-        id
+        self.believed = Some(self.add((map, &fitted), 0.0).id);
     }
 
     /// Adds a place at which a hint expects the robot, while no other is kept.
     pub(super) fn expect(&mut self, seen: &[Seen<'_>], hint: Hint) {
         let seen = &seen[hint.map as usize];
         let fitted = seen.settle_turned(hint.at, seen.settle(hint.at));
-        let id = self.new_id();
-        self.kept.push(Place {
-            predicted: hint.at,
-            is_expected: true,
-            ..Place::born(id, (hint.map, &fitted), 0.0)
-        });
+        let place = self.add((hint.map, &fitted), 0.0);
+        (place.predicted, place.is_expected) = (hint.at, true);
         // Places that the search finds elsewhere start with the weight of "nowhere".
         self.nowhere = self.nowhere_by(fitted.score) - EXPECTED;
         // A rival within the hint's ellipse is as likely as the hint itself.
@@ -165,17 +171,18 @@ impl Places {
         nowhere_by_score(score, score, &self.config).clamp(-cap, cap)
     }
 
-    fn new_id(&mut self) -> u32 {
-        self.next_id += 1;
-        self.next_id
+    /// Keeps another place, at a fit on the map with this number.
+    fn add(&mut self, at: (u32, &Fitted), log_weight: f64) -> &mut Place {
+        self.last_id += 1;
+        self.kept.push(Place::born(self.last_id, at, log_weight));
+        self.kept.last_mut().expect("a place was added")
     }
 
-    /// Moves one place by a path and fits the scan there; `since_key` is the path since the last
-    /// key scan. While the robot stands, scans that agree do not move the place, because their
-    /// errors are those of the first scan.
+    /// Moves the believed place by a path and fits the scan there; `since_key` is the path since
+    /// the last key scan. While the robot stands, scans that agree do not move the place, because
+    /// their errors are those of the first scan.
     pub(super) fn follow(
         &mut self,
-        id: u32,
         seen: &[Seen<'_>],
         (path, since_key): (&DrivenPath, &DrivenPath),
     ) {
@@ -184,7 +191,8 @@ impl Places {
             restart_fall,
             ..
         } = self.config;
-        let Some(place) = self.kept.iter_mut().find(|place| place.id == id) else {
+        let mut kept = self.kept.iter_mut();
+        let Some(place) = kept.find(|place| self.believed == Some(place.id)) else {
             return;
         };
         let seen = &seen[place.map as usize];
@@ -203,17 +211,16 @@ impl Places {
     }
 
     /// Weighs all places, and the candidates of the same scan, at a key scan. All places except the
-    /// believed one have moved by `path` since the last key scan. If the believed place merges with
-    /// another, `believed` becomes the other's id.
+    /// believed one have moved by `path` since the last key scan.
     pub(super) fn weigh(
         &mut self,
-        (seen, transitions): (&[Seen<'_>], &[Transition]),
+        seen: &[Seen<'_>],
+        transitions: &[Transition],
         path: &DrivenPath,
-        believed: &mut Option<u32>,
     ) {
         let noise = self.config.odometry_error;
         for place in &mut self.kept {
-            if *believed != Some(place.id) {
+            if self.believed != Some(place.id) {
                 place.predicted = path.predict((place.pose, place.covariance), noise);
                 place.set(&seen[place.map as usize].settle(place.predicted));
             } else {
@@ -228,10 +235,9 @@ impl Places {
         let best = Best { score, map, seen };
         self.count(best);
         self.add_new(best);
-        self.add_across(transitions, best, *believed);
-        self.candidates.clear();
+        self.add_across(transitions, best);
         self.key_scans += 1;
-        self.tidy(believed);
+        self.tidy();
     }
 
     /// Returns the highest score of any place, and its map.
@@ -243,30 +249,16 @@ impl Places {
         places.chain(candidates).fold((0, 0.0), higher)
     }
 
-    /// Evidence of a key scan against a place with this score on this map. Score that the maps may
-    /// leave out does not count.
-    fn against(&self, best: Best<'_>, at: (u32, f64)) -> f64 {
-        let explained = explained(best.score).min(self.config.scan_cap);
-        self.behind(best, at).min(explained)
-    }
-
-    /// Does the same without the cap of a key scan.
-    fn behind(&self, best: Best<'_>, (map, score): (u32, f64)) -> f64 {
-        lead(best.score, score + best.left_out(map)).max(0.0) / LEAD_SCALE
-    }
-
     fn count(&mut self, best: Best<'_>) {
         // They were sorted at the key scan before, and no weight has changed since.
         let top = self.kept.first().map_or(0.0, |best| best.log_weight);
         let by_odometry = |place: &Place| BY_DEVIATION * place.off.min(GATE);
-        for i in 0..self.kept.len() {
-            let Place { map, last, .. } = self.kept[i];
-            let against = self.against(best, (map, last));
-            let place = &mut self.kept[i];
+        let cap = self.config.scan_cap;
+        for place in &mut self.kept {
+            let against = best.against((place.map, place.last), cap);
             place.log_weight += -top - against - by_odometry(place);
             place.grow();
         }
-        let cap = self.config.scan_cap;
         let first = self.leading().copied();
         self.nowhere -= top;
         if let Some(first) = first {
@@ -278,7 +270,7 @@ impl Places {
 
     /// Sorts the places best first; drops those too far behind or without a free slot, and merges
     /// those that have met.
-    fn tidy(&mut self, believed: &mut Option<u32>) {
+    fn tidy(&mut self) {
         // Ids grow, so that the older of two equal places comes first.
         self.kept.sort_unstable_by(|a, b| {
             let by_weight = b.log_weight.total_cmp(&a.log_weight);
@@ -303,8 +295,8 @@ impl Places {
                 .find(|other| other.is_within((place.map, place.pose), MERGED_M, MERGED_RADIANS));
             if let Some(other) = met {
                 other.crossed_from = other.crossed_from.or(place.crossed_from);
-                if *believed == Some(place.id) {
-                    *believed = Some(other.id);
+                if self.believed == Some(place.id) {
+                    self.believed = Some(other.id);
                 }
                 continue;
             }

@@ -6,7 +6,10 @@ mod hints;
 
 use std::f64::consts::PI;
 
-use messages::{TrackReason, TrackState};
+use messages::TrackReason::{
+    NoPlace, NoScan, NoSearch, OdometryJump, OnePlace, PoorFit, SeveralPlaces,
+};
+use messages::TrackState::{self, Doubtful, Lost, Searching, Unique};
 
 use super::*;
 use crate::beams::BeamConfig;
@@ -15,9 +18,10 @@ use crate::grid::{CellRules, Grid, GridFrame};
 use crate::peaks::{self, PeakConfig, PeakInput, Target};
 use crate::scan::Scan;
 use crate::space::Space;
+use crate::testing::{RESOLUTION_M, scan_from};
 use crate::vote_search::{Prior, VoteSearch, VoteSearchConfig};
 
-use self::building::{ALIKE, Building, RESOLUTION_M, UNLIKE, building};
+use self::building::{ALIKE, Building, UNLIKE, building};
 
 const START: Pose = Pose::new(1.0, 0.8, 0.0);
 
@@ -31,13 +35,10 @@ fn one_scan_is_never_enough_and_a_few_metres_are() {
     let building = building(&UNLIKE);
     let mut tracker = PlaceTracker::new(TrackingConfig::default());
     assert_eq!(building.step(&mut tracker, START, None), Need::ThisScan);
-    assert_eq!(tracker.report().state, TrackState::Searching);
+    assert_eq!(tracker.report().state, Searching);
     let end = building.drive(&mut tracker, START, 10);
     let report = tracker.report();
-    assert_eq!(
-        (report.state, report.reason),
-        (TrackState::Unique, TrackReason::OnePlace)
-    );
+    assert_eq!((report.state, report.reason), (Unique, OnePlace));
     assert!(is_at(&tracker, end), "{report:?}");
     assert!(report.covariance.to_rows()[0].sqrt() < 0.1 && report.probability > 0.94);
 }
@@ -55,34 +56,26 @@ fn unanswered(
 #[test]
 fn a_doubt_stays_until_a_search_has_an_answer() {
     let building = building(&UNLIKE);
-    let mut tracker = building.believed(START);
-    let end = building.drive(&mut tracker, START, 5);
-    assert_eq!(tracker.report().state, TrackState::Unique);
+    let (mut tracker, end) = building.followed(5);
     // The robot is carried off for one scan: a search is needed, and has no answer.
     let elsewhere = Pose::new(end.x, end.y, end.yaw + PI / 2.0);
     let still = Some(Pose::IDENTITY);
     let need = unanswered(&building, &mut tracker, elsewhere, still);
-    assert_eq!(
-        (need, tracker.report().state),
-        (Need::ThisScan, TrackState::Doubtful)
-    );
+    assert_eq!((need, tracker.report().state), (Need::ThisScan, Doubtful));
     // The scan fits again, but no search has covered other places.
     let step = Pose::new(0.3, 0.0, 0.0);
-    let mut pose = end;
-    let mut asked = 0;
+    let (mut pose, mut asked) = (end, 0);
     for _ in 0..4 {
         pose = pose.then(step);
-        asked += u32::from(unanswered(&building, &mut tracker, pose, Some(step)) == Need::ThisScan);
+        let need = unanswered(&building, &mut tracker, pose, Some(step));
+        asked += u32::from(need == Need::ThisScan);
         let report = tracker.report();
-        assert_eq!(
-            (report.state, report.reason),
-            (TrackState::Doubtful, TrackReason::PoorFit)
-        );
+        assert_eq!((report.state, report.reason), (Doubtful, PoorFit));
     }
     assert!(asked >= 2, "{asked} searches were asked for");
     assert!(is_at(&tracker, pose));
     let end = building.drive(&mut tracker, pose, 3);
-    assert_eq!(tracker.report().state, TrackState::Unique);
+    assert_eq!(tracker.report().state, Unique);
     assert!(is_at(&tracker, end));
 }
 
@@ -91,11 +84,11 @@ fn the_map_is_only_blamed_after_a_search() {
     let building = building(&UNLIKE);
     let mut tracker = PlaceTracker::new(TrackingConfig::default());
     unanswered(&building, &mut tracker, START, None);
-    assert_eq!(tracker.report().reason, TrackReason::NoSearch);
+    assert_eq!(tracker.report().reason, NoSearch);
     let found_nothing = |_: Need| Some(Vec::new());
     let need = building.see(&mut tracker, &building.ends(START), None, found_nothing);
     assert_eq!(need, Need::ThisScan);
-    assert_eq!(tracker.report().reason, TrackReason::NoPlace);
+    assert_eq!(tracker.report().reason, NoPlace);
 }
 
 #[test]
@@ -108,10 +101,10 @@ fn nothing_becomes_the_only_place_without_a_search() {
     for _ in 0..6 {
         pose = pose.then(step);
         unanswered(&building, &mut tracker, pose, Some(step));
-        assert_ne!(tracker.report().state, TrackState::Unique);
+        assert_ne!(tracker.report().state, Unique);
     }
     building.drive(&mut tracker, pose, 4);
-    assert_eq!(tracker.report().state, TrackState::Unique);
+    assert_eq!(tracker.report().state, Unique);
 }
 
 #[test]
@@ -119,10 +112,7 @@ fn places_that_look_alike_are_never_distinguished() {
     let building = building(&ALIKE);
     let (tracker, _) = building.tracked(6);
     let report = tracker.report();
-    assert_eq!(
-        (report.state, report.reason),
-        (TrackState::Searching, TrackReason::SeveralPlaces)
-    );
+    assert_eq!((report.state, report.reason), (Searching, SeveralPlaces));
     assert_eq!(report.rivals, 2, "{}", report.words());
     // The two places are half a turn and metres apart: the covariance spans both.
     assert!(
@@ -136,28 +126,23 @@ fn places_that_look_alike_are_never_distinguished() {
 fn a_robot_that_is_carried_away_is_noticed_at_once_and_found_again() {
     let building = building(&UNLIKE);
     let (mut tracker, _) = building.tracked(8);
-    assert_eq!(tracker.report().state, TrackState::Unique);
+    assert_eq!(tracker.report().state, Unique);
     let elsewhere = Pose::new(4.0, 1.9, PI);
     assert_eq!(
         building.step(&mut tracker, elsewhere, Some(Pose::IDENTITY)),
         Need::ThisScan
     );
     let report = tracker.report();
-    assert_eq!(
-        (report.state, report.reason),
-        (TrackState::Doubtful, TrackReason::PoorFit)
-    );
+    assert_eq!((report.state, report.reason), (Doubtful, PoorFit));
     let end = building.drive(&mut tracker, elsewhere, 9);
-    assert_eq!(tracker.report().state, TrackState::Unique);
+    assert_eq!(tracker.report().state, Unique);
     assert!(is_at(&tracker, end));
 }
 
 #[test]
 fn where_it_is_not_known_how_the_robot_moved_three_key_scans_have_to_agree_again() {
     let building = building(&UNLIKE);
-    let mut tracker = building.believed(START);
-    let end = building.drive(&mut tracker, START, 5);
-    assert_eq!(tracker.report().state, TrackState::Unique);
+    let (mut tracker, end) = building.followed(5);
     // Odometry restarts while the robot drives on.
     let mut at = end.then(Pose::new(0.6, -0.1, -0.1));
     let step = Pose::new(0.45, 0.0, 0.0);
@@ -169,17 +154,14 @@ fn where_it_is_not_known_how_the_robot_moved_three_key_scans_have_to_agree_again
         moved = Some(step);
         at = at.then(step);
     }
-    let doubtful = TrackState::Doubtful;
-    assert_eq!(states, [doubtful, doubtful, TrackState::Unique]);
+    assert_eq!(states, [Doubtful, Doubtful, Unique]);
     assert!(is_at(&tracker, at.then(step.inverse())));
 }
 
 /// States at key scans in which `of_nine` of nine beams pass through walls, after scans that fit.
 fn states_where_scans_fit_badly(of_nine: usize) -> Vec<TrackState> {
     let building = building(&UNLIKE);
-    let mut tracker = building.believed(START);
-    let mut at = building.drive(&mut tracker, START, 5);
-    assert_eq!(tracker.report().state, TrackState::Unique);
+    let (mut tracker, mut at) = building.followed(5);
     let step = Pose::new(0.0, 0.0, 0.36);
     let take = |_| {
         at = at.then(step);
@@ -198,21 +180,14 @@ fn states_where_scans_fit_badly(of_nine: usize) -> Vec<TrackState> {
 #[test]
 fn what_fits_badly_for_long_is_not_taken_for_good() {
     let states = states_where_scans_fit_badly(5);
-    assert!(
-        states.iter().all(|state| *state != TrackState::Unique),
-        "{states:?}"
-    );
+    assert!(states.iter().all(|state| *state != Unique), "{states:?}");
     // This fits well enough for a new place: the building has changed.
     let states = states_where_scans_fit_badly(3);
-    let doubtful = states
-        .iter()
-        .take_while(|state| **state == TrackState::Doubtful);
+    let doubtful = states.iter().take_while(|state| **state == Doubtful);
     let doubtful = doubtful.count();
     assert!((1..8).contains(&doubtful), "{states:?}");
     assert!(
-        states[doubtful..]
-            .iter()
-            .all(|state| *state == TrackState::Unique),
+        states[doubtful..].iter().all(|state| *state == Unique),
         "{states:?}"
     );
 }
@@ -226,19 +201,16 @@ fn what_odometry_misses_is_followed() {
     building.step(&mut tracker, turned, Some(Pose::new(0.3, 0.0, 0.0)));
     let report = tracker.report();
     assert!(is_at(&tracker, turned), "{report:?}");
-    assert_eq!(
-        (report.state, report.reason),
-        (TrackState::Doubtful, TrackReason::OdometryJump)
-    );
+    assert_eq!((report.state, report.reason), (Doubtful, OdometryJump));
     building.drive(&mut tracker, turned, 2);
-    assert_eq!(tracker.report().state, TrackState::Unique);
+    assert_eq!(tracker.report().state, Unique);
 }
 
 #[test]
 fn a_laser_whose_scans_stay_the_same_while_odometry_drives_on_is_doubted_and_lost() {
     let building = building(&UNLIKE);
     let (mut tracker, at) = building.tracked(8);
-    assert_eq!(tracker.report().state, TrackState::Unique);
+    assert_eq!(tracker.report().state, Unique);
     let step = Some(Pose::new(0.1, 0.0, 0.0));
     let states: Vec<TrackState> = (0..60)
         .map(|_| {
@@ -248,13 +220,11 @@ fn a_laser_whose_scans_stay_the_same_while_odometry_drives_on_is_doubted_and_los
         .collect();
     // A metre is more than the error of odometry, and the fault lasts.
     assert!(
-        states[10..]
-            .iter()
-            .all(|state| *state != TrackState::Unique),
+        states[10..].iter().all(|state| *state != Unique),
         "{states:?}"
     );
-    assert!(states.contains(&TrackState::Lost), "{states:?}");
-    assert_eq!(tracker.report().reason, TrackReason::OdometryJump);
+    assert!(states.contains(&Lost), "{states:?}");
+    assert_eq!(tracker.report().reason, OdometryJump);
 }
 
 #[test]
@@ -271,7 +241,7 @@ fn a_robot_that_stands_keeps_its_pose() {
         let ends = building.ends_of(&ranges);
         building.see(&mut tracker, &ends, Some(Pose::IDENTITY), |_| None);
     }
-    assert_eq!(tracker.report().state, TrackState::Unique);
+    assert_eq!(tracker.report().state, Unique);
     let moved = pose.zip(tracker.report().pose).unwrap();
     assert!(moved.0.is_within(moved.1, 0.02, 0.005), "{moved:?}");
 }
@@ -305,8 +275,7 @@ fn without_odometry_scans_show_how_the_robot_moved() {
 #[test]
 fn while_the_pose_is_sure_few_scans_are_searched() {
     let building = building(&UNLIKE);
-    let mut tracker = building.believed(START);
-    let mut at = building.drive(&mut tracker, START, 4);
+    let (mut tracker, mut at) = building.followed(4);
     let step = Pose::new(0.0, 0.0, 0.36);
     let (mut asked, mut due) = (0, 0);
     // The robot turns on the spot: each scan is a key scan.
@@ -321,7 +290,7 @@ fn while_the_pose_is_sure_few_scans_are_searched() {
         asked += u32::from(tracker.asks_ahead());
     }
     assert_eq!((asked, due), (3, 3));
-    assert_eq!(tracker.report().state, TrackState::Unique);
+    assert_eq!(tracker.report().state, Unique);
     assert!(is_at(&tracker, at));
 }
 
@@ -333,7 +302,7 @@ fn a_scan_of_nothing_changes_nothing() {
     assert_eq!(need, Need::Nothing);
     assert_eq!(
         (tracker.report().pose, tracker.report().reason),
-        (None, TrackReason::NoScan)
+        (None, NoScan)
     );
 }
 
@@ -367,8 +336,8 @@ fn where_one_scan_is_believed_rooms_that_are_alike_are_not() {
         tracker
     };
     let tracker = after_a_scan(&UNLIKE);
-    assert_eq!(tracker.report().state, TrackState::Unique);
+    assert_eq!(tracker.report().state, Unique);
     assert!(is_at(&tracker, START));
     let state = after_a_scan(&ALIKE).report().state;
-    assert_eq!(state, TrackState::Searching);
+    assert_eq!(state, Searching);
 }

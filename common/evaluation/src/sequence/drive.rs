@@ -87,26 +87,18 @@ pub(super) fn search(
 ) -> anyhow::Result<Option<Moment>> {
     let reply = session.ask(scan)?;
     accepted.count(&reply);
-    let (map_id, search_ms) = (reply.map_id, reply.cpu_ms);
-    let hypotheses = reply.answer.map(|answer| {
-        // They stay poses of the first laser, as in the graph.
-        let of_laser = Target::of(None, false);
-        let places = answer.places.places.iter();
-        let hypotheses = places.map(|place| place.hypothesis(map_id, of_laser));
-        (answer.places.verdict, hypotheses.collect::<Vec<_>>())
-    });
-    let Ok((verdict, hypotheses)) = hypotheses else {
+    let search_ms = reply.cpu_ms;
+    let Ok(places) = reply.answer.map(|answer| answer.places.clone()) else {
         return Ok(None);
     };
     let view = session.view(scan)?;
-    let mut found = Vec::new();
-    let hypotheses = hypotheses.iter().map(|found| (0, found));
-    Candidate::fill(&mut found, Some(verdict), hypotheses, view.target);
+    // Places of a session are poses of the first laser, as in the graph.
+    let laser = Target::of(None, false);
     Ok(Some(Moment {
         stamp_ns: scan.stamp_ns,
         truth,
         is_nowhere: false,
-        found: found.into(),
+        found: Candidate::of_places(&places, laser, view.target).into(),
         search_ms,
         by_odometry: view.by_odometry,
         moved: None,

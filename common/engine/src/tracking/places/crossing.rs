@@ -9,22 +9,17 @@ impl Places {
     /// Adds the other side of a transition as a place, if the believed or else the leading place is
     /// in one: the robot may be on either side. Earlier scans say nothing about this, so only the
     /// current scan counts, and the place stays however badly earlier scans fitted there.
-    pub(super) fn add_across(
-        &mut self,
-        transitions: &[Transition],
-        best: Best<'_>,
-        believed: Option<u32>,
-    ) {
-        let believed = believed.and_then(|id| self.get(id));
-        let Some(here) = believed.or(self.leading()).copied() else {
+    pub(super) fn add_across(&mut self, transitions: &[Transition], best: Best<'_>) {
+        let Some(here) = self.believed().or(self.leading()).copied() else {
             return;
         };
         let sides = transitions.iter().filter_map(|transition| {
             other_side(transition, (here.map, here.pose), here.covariance)
         });
+        let cap = self.config.scan_cap;
         for (map, predicted) in sides {
             let fitted = best.seen[map as usize].settle(predicted);
-            let log_weight = here.log_weight - self.against(best, (map, fitted.score));
+            let log_weight = here.log_weight - best.against((map, fitted.score), cap);
             let at = (map, fitted.pose);
             let mut kept = self.kept.iter_mut();
             match kept.find(|place| place.is_within(at, SAME_M, SAME_RADIANS)) {
@@ -32,13 +27,7 @@ impl Places {
                     place.crossed_from = Some(here.map);
                     place.log_weight = place.log_weight.max(log_weight);
                 }
-                None => {
-                    let id = self.new_id();
-                    self.kept.push(Place {
-                        crossed_from: Some(here.map),
-                        ..Place::born(id, (map, &fitted), log_weight)
-                    });
-                }
+                None => self.add((map, &fitted), log_weight).crossed_from = Some(here.map),
             }
         }
     }

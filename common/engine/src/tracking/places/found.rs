@@ -2,7 +2,7 @@
 
 use nalgebra::{Matrix3, Vector3};
 
-use super::{Best, GATE, Place, Places, SAME_M, SAME_RADIANS};
+use super::{Best, GATE, Places, SAME_M, SAME_RADIANS};
 use crate::tracking::driven_path::DrivenPath;
 use crate::tracking::place::Candidate;
 use crate::tracking::seen::{Fitted, Seen, information, squared_deviations};
@@ -21,31 +21,30 @@ const SNAP_BY_DEVIATION: f64 = 0.01;
 const LATE: f64 = 3.5;
 
 impl Places {
-    /// Takes the places that a search found for this scan. They are scored again, because a search
-    /// gives only an upper bound of the score of places far behind.
-    pub(crate) fn take(&mut self, seen: &[Seen<'_>], found: &[Candidate]) {
-        self.candidates.clear();
-        self.candidates.extend(found.iter().map(|found| {
-            let (pose, covariance) = found.at();
-            let fitted = Fitted {
-                pose,
-                covariance,
-                score: seen[found.map as usize].score(pose),
-                off: 0.0,
-            };
-            (found.map, fitted)
-        }));
-    }
-
-    /// Takes the places that a search found for an earlier scan; `path` is the path since then.
-    pub(crate) fn take_ahead(&mut self, seen: &[Seen<'_>], path: &DrivenPath, found: &[Candidate]) {
+    /// Takes the places that a search found for this scan or, if there is a path since then, for an
+    /// earlier one. Those of this scan are scored again, because a search gives only an upper bound
+    /// of the score of places far behind.
+    pub(crate) fn take(
+        &mut self,
+        seen: &[Seen<'_>],
+        found: &[Candidate],
+        since: Option<&DrivenPath>,
+    ) {
         let noise = self.config.odometry_error;
-        self.candidates.clear();
-        self.candidates.extend(found.iter().map(|candidate| {
-            let seen = &seen[candidate.map as usize];
-            let settled = seen.settle(path.predict(candidate.at(), noise));
-            (candidate.map, settled)
-        }));
+        let found = found.iter().map(|candidate| {
+            let (seen, at) = (&seen[candidate.map as usize], candidate.at());
+            let fitted = match since {
+                Some(path) => seen.settle(path.predict(at, noise)),
+                None => Fitted {
+                    pose: at.0,
+                    covariance: at.1,
+                    score: seen.score(at.0),
+                    off: 0.0,
+                },
+            };
+            (candidate.map, fitted)
+        });
+        self.candidates = found.collect();
     }
 
     /// Moves places to candidates that confirm them and fit better.
@@ -69,21 +68,12 @@ impl Places {
                 place.set(&Fitted { off, ..*candidate });
             }
         }
-        let places = &self.kept;
-        self.is_known.clear();
-        self.is_known
-            .extend(self.candidates.iter().map(|&(map, candidate)| {
-                let at = (map, candidate.pose);
-                places
-                    .iter()
-                    .any(|place| place.is_within(at, SAME_M, SAME_RADIANS))
-            }));
     }
 
     /// Adds the candidates that are at none of the places kept. Each starts with the weight of
     /// "nowhere", to which it belonged until now, or less if earlier searches did not find it.
     pub(super) fn add_new(&mut self, best: Best<'_>) {
-        let is_first = self.kept.is_empty();
+        let before = self.kept.len();
         let top = self.leading().map_or(0.0, |place| place.log_weight);
         let newborn = match self.was_searched {
             true => self.nowhere.min(top - LATE),
@@ -91,23 +81,22 @@ impl Places {
         };
         self.was_searched |= !self.candidates.is_empty();
         let expected = self.expected.take();
-        for i in 0..self.candidates.len() {
-            if self.is_known[i] {
+        for (map, found) in std::mem::take(&mut self.candidates) {
+            let at = (map, found.pose);
+            let mut known = self.kept[..before].iter();
+            if known.any(|place| place.is_within(at, SAME_M, SAME_RADIANS)) {
                 continue;
             }
-            let (map, found) = self.candidates[i];
-            let expected = expected.filter(|expected| expected.hint.holds((map, found.pose)));
-            let before = expected.map_or(newborn, |expected| expected.log_weight);
-            let log_weight = before - self.against(best, (map, found.score));
-            let id = self.new_id();
-            self.kept.push(Place {
-                is_expected: expected.is_some(),
-                ..Place::born(id, (map, &found), log_weight)
-            });
+            let expected = expected.filter(|expected| expected.hint.holds(at));
+            let unseen = expected.map_or(newborn, |expected| expected.log_weight);
+            let log_weight = unseen - best.against((map, found.score), self.config.scan_cap);
+            self.add((map, &found), log_weight).is_expected = expected.is_some();
         }
         // The first scan changes the weight of "nowhere" as a later one does.
-        if let Some(score) = self.leading().filter(|_| is_first).map(|place| place.last) {
-            self.nowhere += self.nowhere_by(score);
+        if before == 0
+            && let Some(first) = self.leading()
+        {
+            self.nowhere += self.nowhere_by(first.last);
         }
     }
 }

@@ -24,6 +24,8 @@ pub(crate) struct Hint {
     pub map: u32,
     /// Pose and covariance in the map.
     pub at: (Pose, Matrix3<f64>),
+    /// Path of the robot since the hint was given.
+    pub since: DrivenPath,
 }
 
 impl Hint {
@@ -31,6 +33,7 @@ impl Hint {
         Hint {
             map,
             at: (pose, covariance.into()),
+            since: DrivenPath::default(),
         }
     }
 
@@ -49,11 +52,12 @@ impl Hint {
         squared_deviations(pose, self.at.0, &information(&self.at.1))
     }
 
-    /// Returns the hint after the robot drove this path.
+    /// Returns the hint moved along the path since it was given.
     #[must_use]
-    pub(crate) fn after(&self, path: &DrivenPath, noise: f64) -> Self {
+    pub(crate) fn moved(&self, noise: f64) -> Self {
         Hint {
-            at: path.predict(self.at, noise),
+            at: self.since.predict(self.at, noise),
+            since: DrivenPath::default(),
             ..*self
         }
     }
@@ -69,19 +73,20 @@ pub(super) struct WeighedHint {
 impl Places {
     /// True if, by the last scan alone, the robot may be at a hint rather than at the believed
     /// place.
-    pub(crate) fn may_be_at(&self, hint: &Hint, seen: &[Seen<'_>], believed: u32) -> bool {
-        self.fit_hint(hint, seen, believed).is_some()
+    pub(crate) fn may_be_at(&self, hint: &Hint, seen: &[Seen<'_>]) -> bool {
+        self.fit_hint(hint, seen).is_some()
     }
 
     /// Makes the next [`Places::weigh`] weigh a hint against the believed place. Other places in
     /// its ellipse, kept or found by a search, become as likely as the hint.
-    pub(crate) fn expect_beside(&mut self, hint: Hint, seen: &[Seen<'_>], believed: u32) {
-        if let Some((fitted, log_weight)) = self.fit_hint(&hint, seen, believed) {
+    pub(crate) fn expect_beside(&mut self, hint: Hint, seen: &[Seen<'_>]) {
+        if let Some((fitted, log_weight)) = self.fit_hint(&hint, seen) {
             self.candidates.push((hint.map, fitted));
-            let others = self.kept.iter_mut().filter(|place| place.id != believed);
-            for place in others.filter(|place| hint.holds((place.map, place.pose))) {
-                place.log_weight = place.log_weight.max(log_weight);
-                place.is_expected = true;
+            for place in &mut self.kept {
+                if self.believed != Some(place.id) && hint.holds((place.map, place.pose)) {
+                    place.log_weight = place.log_weight.max(log_weight);
+                    place.is_expected = true;
+                }
             }
             self.expected = Some(WeighedHint { hint, log_weight });
         }
@@ -90,8 +95,8 @@ impl Places {
     /// Fits the scan at a hint and returns the fit and its log weight. `None` if the scan is more
     /// evidence against the hint than the hint is for itself; that evidence is not capped, since
     /// earlier scans have confirmed the believed place.
-    fn fit_hint(&self, hint: &Hint, seen: &[Seen<'_>], believed: u32) -> Option<(Fitted, f64)> {
-        let believed = self.get(believed)?;
+    fn fit_hint(&self, hint: &Hint, seen: &[Seen<'_>]) -> Option<(Fitted, f64)> {
+        let believed = self.believed()?;
         let on_map = &seen[hint.map as usize];
         let fitted = on_map.settle_turned(hint.at, on_map.settle(hint.at));
         // The hint draws a fit to itself, so the fit is repeated from there; fits of the search
@@ -110,11 +115,11 @@ impl Places {
             false => (believed.map, believed.last),
         };
         let best = Best { score, map, seen };
-        let log_weight = EXPECTED - self.nowhere_by(fitted.score) - self.behind(best, at);
+        let log_weight = EXPECTED - self.nowhere_by(fitted.score) - best.behind(at);
         // A pose near the believed place is a different answer only if the scan fits better there.
         let is_other = believed.is_apart_from((hint.map, fitted.pose))
             || fitted.score > believed.last + BETTER;
-        let with_scan = log_weight + self.against(best, at);
+        let with_scan = log_weight + best.against(at, self.config.scan_cap);
         (is_other && log_weight > 0.0).then_some((fitted, with_scan))
     }
 }

@@ -2,15 +2,14 @@
 
 use super::*;
 
-pub(super) const BEAMS: usize = 180;
-pub(super) const RESOLUTION_M: f64 = 0.1;
+const BEAMS: usize = 180;
 
 /// A building in which scans are simulated and searched.
 pub(super) struct Building {
     grid: Grid,
     distance_field: DistanceField,
     vote_search: VoteSearch,
-    pub(super) space: Space,
+    space: Space,
 }
 
 /// Makes a building. Its walls must be ragged, so that its map does not count as drawn.
@@ -34,6 +33,10 @@ pub(super) fn building(rows: &[&str]) -> Building {
     }
 }
 
+fn scan(ranges: &[f32]) -> Scan<'_> {
+    scan_from(-PI, 2.0 * PI / BEAMS as f64, ranges)
+}
+
 impl Building {
     /// Ranges of a laser at a pose, all around, to a centimetre.
     pub(super) fn ranges(&self, pose: Pose) -> Vec<f32> {
@@ -54,22 +57,12 @@ impl Building {
         (0..BEAMS).map(read).collect()
     }
 
-    pub(super) fn scan<'a>(&self, ranges: &'a [f32]) -> Scan<'a> {
-        Scan {
-            angle_min: -PI,
-            angle_increment: 2.0 * PI / BEAMS as f64,
-            range_min_m: 0.0,
-            range_max_m: 30.0,
-            ranges,
-        }
-    }
-
     pub(super) fn ends(&self, pose: Pose) -> Ends {
         self.ends_of(&self.ranges(pose))
     }
 
     pub(super) fn ends_of(&self, ranges: &[f32]) -> Ends {
-        Ends::new(&self.scan(ranges), &self.space, &BeamConfig::default()).unwrap()
+        Ends::new(&scan(ranges), &self.space, &BeamConfig::default()).unwrap()
     }
 
     pub(super) fn found(&self, pose: Pose) -> Vec<Candidate> {
@@ -77,26 +70,17 @@ impl Building {
     }
 
     pub(super) fn found_of(&self, ranges: &[f32]) -> Vec<Candidate> {
-        let outcome = self.vote_search.search(&self.scan(ranges), &|| false);
+        let outcome = self.vote_search.search(&scan(ranges), &|| false);
         let outcome = outcome.unwrap().unwrap();
         let input = PeakInput::of(&outcome, self.vote_search.frame());
         let mut workspace = peaks::Workspace::default();
         let beams = BeamConfig::default();
-        let find = |ends: &mut Ends| ends.find(&self.scan(ranges), &self.space, &beams);
+        let find = |ends: &mut Ends| ends.find(&scan(ranges), &self.space, &beams);
         let config = PeakConfig::default();
         let judged = workspace.judge(&input, &self.distance_field, &config, find);
         let places = judged.unwrap().places;
         let target = Target::of(None, false);
-        let hypothesis = |place: &crate::peaks::Place| place.hypothesis(1, target);
-        let hypotheses: Vec<_> = places.places.iter().map(hypothesis).collect();
-        let mut found = Vec::new();
-        Candidate::fill(
-            &mut found,
-            Some(places.verdict),
-            hypotheses.iter().map(|found| (0, found)),
-            target,
-        );
-        found
+        Candidate::of_places(places, target, target)
     }
 
     pub(super) fn seen<'a>(&'a self, ends: &'a Ends, fit: &'a FitConfig) -> Seen<'a> {
@@ -135,14 +119,16 @@ impl Building {
         })
     }
 
-    /// A tracker that believes the true pose of the robot.
-    pub(super) fn believed(&self, truth: Pose) -> PlaceTracker {
-        let (ends, fit) = (self.ends(truth), FitConfig::default());
+    /// A tracker that started at the trusted pose [`START`] and followed the robot, and the last pose.
+    pub(super) fn followed(&self, steps: usize) -> (PlaceTracker, Pose) {
+        let (ends, fit) = (self.ends(START), FitConfig::default());
         let mut tracker = PlaceTracker::new(TrackingConfig::default());
         let covariance = Covariance::from_deviations(0.1, 0.1, 0.1);
-        tracker.start_at(&[self.seen(&ends, &fit)], (0, truth), covariance);
-        self.step(&mut tracker, truth, Some(Pose::IDENTITY));
-        tracker
+        tracker.start_at(&[self.seen(&ends, &fit)], (0, START), covariance);
+        self.step(&mut tracker, START, Some(Pose::IDENTITY));
+        let end = self.drive(&mut tracker, START, steps);
+        assert_eq!(tracker.report().state, Unique);
+        (tracker, end)
     }
 
     /// A tracker that found the robot at [`START`] by itself and followed it, and the last pose.

@@ -33,7 +33,7 @@ fn a_drawn_map_may_be_right_where_a_measured_one_fits_better() {
         });
         tracker.finish(&seen, Some(&found));
         let report = tracker.report();
-        assert_ne!(report.state, TrackState::Unique, "{number}: {report:?}");
+        assert_ne!(report.state, Unique, "{number}: {report:?}");
         let step = Pose::new(0.4, 0.0, 0.0);
         (pose, moved) = (pose.then(step), Some(step));
     }

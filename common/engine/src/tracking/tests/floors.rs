@@ -124,11 +124,11 @@ fn in_the_lift(floors: &Floors) -> (PlaceTracker, Pose) {
 fn into_the_lift(floors: &Floors, tracker: &mut PlaceTracker) -> Pose {
     floors.start_at(tracker, START);
     let (pose, states) = floors.drive(tracker, (0, START), (8, 0));
-    assert!(states.contains(&(TrackState::Unique, 0)), "{states:?}");
+    assert!(states.contains(&(Unique, 0)), "{states:?}");
     let report = tracker.report();
     assert_eq!(
         (report.state, report.reason, report.rivals, report.maps),
-        (TrackState::Doubtful, TrackReason::SeveralPlaces, 2, 2)
+        (Doubtful, SeveralPlaces, 2, 2)
     );
     pose
 }
@@ -138,12 +138,12 @@ fn goes_up(floors: &Floors, tracker: &mut PlaceTracker, pose: Pose) {
     // The robot stands while the lift goes up.
     floors.step(tracker, (1, pose), Some(Pose::IDENTITY));
     let (end, states) = floors.drive(tracker, (1, pose), (4, 6));
-    assert!(!states.contains(&(TrackState::Unique, 0)), "{states:?}");
+    assert!(!states.contains(&(Unique, 0)), "{states:?}");
     assert!(
         states.iter().all(|(state, _)| state.is_believed()),
         "{states:?}"
     );
-    assert_eq!(states.last(), Some(&(TrackState::Unique, 1)), "{states:?}");
+    assert_eq!(states.last(), Some(&(Unique, 1)), "{states:?}");
     assert!(is_at(tracker, end), "{:?}", tracker.report());
 }
 
@@ -153,7 +153,7 @@ fn a_robot_that_leaves_the_lift_where_it_came_in_stays_on_its_floor() {
     let (mut tracker, pose) = in_the_lift(&floors);
     let (end, states) = floors.drive(&mut tracker, (0, pose), (4, 6));
     assert!(states.iter().all(|(_, map)| *map == 0), "{states:?}");
-    assert_eq!(states.last(), Some(&(TrackState::Unique, 0)), "{states:?}");
+    assert_eq!(states.last(), Some(&(Unique, 0)), "{states:?}");
     assert!(is_at(&tracker, end), "{:?}", tracker.report());
 }
 
@@ -162,14 +162,12 @@ fn floors_that_look_alike_leave_a_doubt() {
     let floors = Floors::of(&[&UNLIKE, &UNLIKE]);
     let mut tracker = Floors::tracker();
     floors.start_at(&mut tracker, START);
-    assert_eq!(tracker.report().state, TrackState::Unique);
+    assert_eq!(tracker.report().state, Unique);
     let (_, states) = floors.drive(&mut tracker, (0, START), (12, 6));
-    let after = states
-        .iter()
-        .skip_while(|(state, _)| *state == TrackState::Unique);
+    let after = states.iter().skip_while(|(state, _)| *state == Unique);
     let after: Vec<_> = after.collect();
     assert!(after.len() >= 6, "{states:?}");
-    let is_unique = |state: &&(TrackState, u32)| state.0 == TrackState::Unique;
+    let is_unique = |state: &&(TrackState, u32)| state.0 == Unique;
     assert!(!after.iter().any(is_unique), "{states:?}");
 }
 
@@ -206,14 +204,14 @@ fn a_ride_that_is_over_leads_to_no_third_map() {
     let (mut tracker, pose) = in_the_lift(&floors);
     floors.step(&mut tracker, (1, pose), Some(Pose::IDENTITY));
     let (_, states) = floors.drive(&mut tracker, (1, pose), (4, 6));
-    assert_eq!(states.last(), Some(&(TrackState::Unique, 1)), "{states:?}");
+    assert_eq!(states.last(), Some(&(Unique, 1)), "{states:?}");
     // The robot is carried to a building in which two places look alike.
     let elsewhere = Pose::new(1.0, 0.8, 0.0);
     floors.step(&mut tracker, (2, elsewhere), Some(Pose::IDENTITY));
     let (_, states) = floors.drive(&mut tracker, (2, elsewhere), (5, 6));
-    let is_unique = |state: &(TrackState, u32)| state.0 == TrackState::Unique;
+    let is_unique = |state: &(TrackState, u32)| state.0 == Unique;
     assert!(!states.iter().any(is_unique), "{states:?}");
-    assert_eq!(states.last(), Some(&(TrackState::Lost, 2)), "{states:?}");
+    assert_eq!(states.last(), Some(&(Lost, 2)), "{states:?}");
 }
 
 #[test]
@@ -234,10 +232,7 @@ fn a_floor_that_is_on_no_map_is_not_taken_for_one_that_is() {
         let report = tracker.report();
         states.push((report.state, report.map, report.score));
     }
-    assert!(
-        states.iter().all(|state| state.0 != TrackState::Unique),
-        "{states:?}"
-    );
+    assert!(states.iter().all(|state| state.0 != Unique), "{states:?}");
 }
 
 /// A hall whose walls are farther from its middle than those of the other floors.
@@ -265,5 +260,5 @@ fn a_floor_that_does_not_fit_stays_possible_inside_a_transition() {
         floors.step(&mut tracker, (0, pose), Some(step));
         states.push(tracker.report().state);
     }
-    assert_eq!(states, [TrackState::Doubtful; 5]);
+    assert_eq!(states, [Doubtful; 5]);
 }

@@ -28,16 +28,16 @@ fn stand(building: &Building, tracker: &mut PlaceTracker, truth: Pose) -> Need {
 
 fn believes(tracker: &PlaceTracker, pose: Pose) -> bool {
     let state = tracker.report().state;
-    matches!(state, TrackState::Unique | TrackState::Doubtful) && is_at(tracker, pose)
+    matches!(state, Unique | Doubtful) && is_at(tracker, pose)
 }
 
 #[test]
 fn an_expected_pose_is_believed_where_a_scan_confirms_it() {
     let building = building(&ALIKE);
     let mut tracker = PlaceTracker::new(TrackingConfig::default());
-    tracker.expect((0, START), Covariance::from_deviations(0.3, 0.3, 0.2));
+    tracker.expect((0, START), pointed());
     building.step(&mut tracker, START, None);
-    assert_eq!(tracker.report().state, TrackState::Unique);
+    assert_eq!(tracker.report().state, Unique);
     assert!(is_at(&tracker, START));
     let mut wrong = PlaceTracker::new(TrackingConfig::default());
     wrong.expect(
@@ -45,19 +45,17 @@ fn an_expected_pose_is_believed_where_a_scan_confirms_it() {
         Covariance::from_deviations(0.1, 0.1, 0.1),
     );
     building.step(&mut wrong, START, None);
-    assert_eq!(wrong.report().state, TrackState::Searching);
+    assert_eq!(wrong.report().state, Searching);
     building.drive(&mut wrong, START, 4);
     // It is one of the two places that look alike, or none is believed.
-    assert_ne!(wrong.report().state, TrackState::Unique);
+    assert_ne!(wrong.report().state, Unique);
 }
 
 #[test]
 fn a_hint_near_the_pose_that_is_believed_changes_nothing() {
     let building = building(&UNLIKE);
-    let mut tracker = building.believed(START);
-    let at = building.drive(&mut tracker, START, 5);
+    let (mut tracker, at) = building.followed(5);
     let before = tracker.report();
-    assert_eq!(before.state, TrackState::Unique);
     for off in [Pose::new(0.3, -0.2, 0.1), Pose::new(-0.6, 0.0, 0.2)] {
         tracker.expect((0, at.then(off)), pointed());
         assert_eq!(stand(&building, &mut tracker, at), Need::Nothing);
@@ -84,15 +82,14 @@ fn a_hint_near_the_one_that_is_tried_starts_nothing_anew() {
     // The robot stands, and the next key scan decides.
     assert_eq!(stand(&building, &mut tracker, START), Need::Nothing);
     let end = building.drive(&mut tracker, START, 2);
-    assert_eq!(tracker.report().state, TrackState::Unique);
+    assert_eq!(tracker.report().state, Unique);
     assert!(is_at(&tracker, end));
 }
 
 #[test]
 fn wrong_hints_leave_the_pose_as_it_is() {
     let building = building(&UNLIKE);
-    let mut tracker = building.believed(START);
-    let at = building.drive(&mut tracker, START, 5);
+    let (mut tracker, at) = building.followed(5);
     for i in 0..60 {
         let (row, column) = (i % 4, i / 4 % 5);
         let wrong = Pose::new(
@@ -109,7 +106,7 @@ fn wrong_hints_leave_the_pose_as_it_is() {
         );
     }
     let end = building.drive(&mut tracker, at, 6);
-    assert_eq!(tracker.report().state, TrackState::Unique);
+    assert_eq!(tracker.report().state, Unique);
     assert!(is_at(&tracker, end));
 }
 
@@ -119,7 +116,7 @@ fn a_hint_at_a_place_that_looks_alike_is_taken_up_and_a_pose_is_there_all_the_wh
     let mut tracker = PlaceTracker::new(TrackingConfig::default());
     tracker.expect((0, START), pointed());
     stand(&building, &mut tracker, START);
-    assert_eq!(tracker.report().state, TrackState::Unique);
+    assert_eq!(tracker.report().state, Unique);
     let other = twin(START);
     tracker.expect((0, other.then(Pose::new(0.2, 0.0, 0.1))), pointed());
     let mut scans = 0;
@@ -132,20 +129,19 @@ fn a_hint_at_a_place_that_looks_alike_is_taken_up_and_a_pose_is_there_all_the_wh
         stand(&building, &mut tracker, START);
         scans += 1;
     }
-    assert_eq!(tracker.report().state, TrackState::Unique);
+    assert_eq!(tracker.report().state, Unique);
 }
 
 #[test]
 fn a_robot_that_was_carried_away_is_believed_where_a_hint_says_it_is() {
     let building = building(&UNLIKE);
-    let mut tracker = building.believed(START);
-    building.drive(&mut tracker, START, 5);
+    let (mut tracker, _) = building.followed(5);
     let elsewhere = Pose::new(4.0, 1.9, PI);
     tracker.expect((0, elsewhere.then(Pose::new(0.2, 0.1, 0.1))), pointed());
     for _ in 0..3 {
         stand(&building, &mut tracker, elsewhere);
     }
-    assert_eq!(tracker.report().state, TrackState::Unique);
+    assert_eq!(tracker.report().state, Unique);
     assert!(is_at(&tracker, elsewhere));
 }
 
