@@ -8,7 +8,6 @@ use transport::{TransportError, with_causes};
 
 use super::Node;
 use crate::TrackerError;
-use crate::memory::Remembered;
 use crate::message::Tracked;
 use crate::world::Worlds;
 
@@ -18,14 +17,11 @@ impl Node {
         header: &MapHeader,
         occupancy: &[u8],
     ) -> Result<(), TransportError> {
-        let served = Served::Map(header.map_id);
-        if self.served == Some(served) {
-            return self.health.state(NodeState::Ready);
-        }
-        self.health.state(NodeState::Busy)?;
-        let checked = header.check_id(occupancy).map_err(TrackerError::from);
-        let worlds = checked.and_then(|()| Ok(Worlds::of_map(header, occupancy)?));
-        self.start_on(served, worlds.map_err(|error| (header.map_id, error)))
+        self.start_on(Served::Map(header.map_id), || {
+            let checked = header.check_id(occupancy).map_err(TrackerError::from);
+            let worlds = checked.and_then(|()| Ok(Worlds::of_map(header, occupancy)?));
+            worlds.map_err(|error| (header.map_id, error))
+        })
     }
 
     pub(super) fn take_set(
@@ -33,24 +29,23 @@ impl Node {
         header: &MapsHeader,
         items: &[u8],
     ) -> Result<(), TransportError> {
-        let served = Served::Set(header.set_id);
+        self.start_on(Served::Set(header.set_id), || {
+            let set = MapSet::read(header, items).map_err(|error| (0, error.into()))?;
+            Worlds::of_set(&set).map_err(|(map_id, error)| (map_id, error.into()))
+        })
+    }
+
+    /// Changes to other maps, unless these are tracked on already.
+    fn start_on(
+        &mut self,
+        served: Served,
+        prepare: impl FnOnce() -> Result<Worlds, (u64, TrackerError)>,
+    ) -> Result<(), TransportError> {
         if self.served == Some(served) {
             return self.health.state(NodeState::Ready);
         }
         self.health.state(NodeState::Busy)?;
-        let set = MapSet::read(header, items).map_err(|error| (0, TrackerError::from(error)));
-        let worlds = set.and_then(|set| {
-            Worlds::of_set(&set).map_err(|(map_id, error)| (map_id, TrackerError::from(error)))
-        });
-        self.start_on(served, worlds)
-    }
-
-    fn start_on(
-        &mut self,
-        served: Served,
-        worlds: Result<Worlds, (u64, TrackerError)>,
-    ) -> Result<(), TransportError> {
-        match worlds {
+        match prepare() {
             Ok(worlds) => {
                 self.worlds = worlds;
                 self.served = Some(served);
@@ -87,21 +82,15 @@ impl Node {
             self.tracker.expect(at, covariance);
             return;
         }
-        let Some(Remembered {
-            map_id,
-            map_from_base,
-            covariance,
-            ..
-        }) = self.remembered.take()
-        else {
+        let Some(remembered) = self.remembered.take() else {
             return;
         };
-        let map_id = u64::from_str_radix(&map_id, 16).ok();
+        let map_id = u64::from_str_radix(&remembered.map_id, 16).ok();
         if let Some(number) = map_id.and_then(|map_id| self.worlds.number(map_id))
             && self.initial.is_none()
         {
-            let covariance = Covariance::from_rows(covariance);
-            self.expect_base((number, map_from_base), covariance);
+            let covariance = Covariance::from_rows(remembered.covariance);
+            self.expect_base((number, remembered.map_from_base), covariance);
         }
     }
 
