@@ -6,19 +6,20 @@ mod world;
 use std::time::Duration;
 
 use messages::{InitialPoseKind, TrackState, topic};
+use tests::drawn_map::DrawnMap;
 use transport::testing::{Isolated, wait_until};
 
-use world::{Drawn, HALL, Step, World, ids, searched, with_a_box};
+use world::{HALL, Step, World, drawn, ids, searched, with_a_box};
 
 #[test]
 fn a_pose_that_nobody_searched_for_is_not_unique() {
     let isolated = Isolated::new("refused");
-    let drawn = hall("");
-    let world = World::of_map(&isolated, &drawn);
+    let hall = drawn("", &HALL);
+    let world = World::of_map(&isolated, &hall);
     let start = world.pose_at(6);
     let hint = format!("{},{},0", start.x, start.y);
     let node = world.start(&["--initial-pose", &hint]);
-    let id = drawn.header().map_id;
+    let id = hall.header.map_id;
     // The scan was refused, or another map was searched.
     for number in 0..8 {
         let of = [0, id ^ 1][number % 2];
@@ -35,15 +36,15 @@ fn a_pose_that_nobody_searched_for_is_not_unique() {
 #[test]
 fn what_was_found_by_other_settings_is_left_out_and_the_settings_are_named() {
     let isolated = Isolated::new("settings");
-    let drawn = hall("");
-    let world = World::of_map(&isolated, &drawn);
+    let hall = drawn("", &HALL);
+    let world = World::of_map(&isolated, &hall);
     let health = isolated.join("watcher");
     let reports = health.subscriber::<topic::Health>().unwrap();
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("localization.yaml");
     std::fs::write(&file, "max_beams: 90\n").unwrap();
     let node = world.start(&["--settings", file.to_str().unwrap()]);
-    let id = drawn.header().map_id;
+    let id = hall.header.map_id;
     for x in [6, 8, 10, 12, 14] {
         let pose = world.step(x, id, Some(id)).pose;
         assert_eq!(pose.state, TrackState::Searching as u32, "{pose:?}");
@@ -58,12 +59,12 @@ fn what_was_found_by_other_settings_is_left_out_and_the_settings_are_named() {
 #[test]
 fn a_file_of_the_last_pose_that_cannot_be_used_is_named_and_the_robot_is_searched() {
     let isolated = Isolated::new("remember");
-    let drawn = hall("");
-    let world = World::of_map(&isolated, &drawn);
+    let hall = drawn("", &HALL);
+    let world = World::of_map(&isolated, &hall);
     let health = isolated.join("watcher");
     let reports = health.subscriber::<topic::Health>().unwrap();
     let folder = tempfile::tempdir().unwrap();
-    let id = drawn.header().map_id;
+    let id = hall.header.map_id;
     let cut = folder.path().join("pose.json");
     std::fs::write(&cut, "{\"map_id\":").unwrap();
     for (file, kept) in [(&*cut, true), (folder.path(), false)] {
@@ -88,20 +89,13 @@ fn a_file_of_the_last_pose_that_cannot_be_used_is_named_and_the_robot_is_searche
     assert!(saved.contains("map_from_base"), "{saved}");
 }
 
-fn hall(name: &'static str) -> Drawn {
-    Drawn {
-        name,
-        rows: HALL.into(),
-    }
+fn floors() -> Vec<DrawnMap> {
+    vec![drawn("ground", &HALL), drawn("first", &HALL)]
 }
 
-fn floors() -> Vec<Drawn> {
-    vec![hall("ground"), hall("first")]
-}
-
-fn edited(number: usize) -> Vec<Drawn> {
+fn edited(number: usize) -> Vec<DrawnMap> {
     let mut floors = floors();
-    floors[number].rows = with_a_box(&HALL);
+    floors[number] = drawn(floors[number].header.name.as_str(), &with_a_box());
     floors
 }
 

@@ -11,9 +11,10 @@ use engine::joined::JoinConfig;
 use engine::settings::{fit_id, reading_id};
 use geometry::{Covariance, Pose};
 use messages::{
-    FrameName, HypothesesHeader, Hypothesis, InitialPose, InitialPoseKind, MapHeader, MapName,
-    MapSet, Odometry, PoseHeader, ScanHeader, Stamp, searched_id, topic,
+    FrameName, HypothesesHeader, Hypothesis, InitialPose, InitialPoseKind, MapName, MapSet,
+    Odometry, PoseHeader, ScanHeader, Stamp, searched_id, topic,
 };
+use tests::drawn_map::DrawnMap;
 use tests::drawn_room::{self, FRAME, occupancy};
 use transport::testing::{Isolated, NodeProcess, wait_until_ready};
 use transport::{Flow, Graph, Publisher, Subscriber, TransportError, monotonic_ns};
@@ -39,40 +40,25 @@ const CELL_M: f64 = FRAME.resolution_m;
 /// Row along which the robot drives, counted from below.
 const ROW: usize = 6;
 
-pub(crate) struct Drawn {
-    pub(crate) name: &'static str,
-    pub(crate) rows: Vec<&'static str>,
+/// Makes the map of a drawing; without a name, it is served alone.
+pub(crate) fn drawn(name: &str, rows: &[&str]) -> DrawnMap {
+    let mut map = DrawnMap::new(rows[0].len() as u32, CELL_M, occupancy(rows));
+    map.header.name = MapName::new(name);
+    map.header.map_id = map.header.id_of(&map.cells);
+    map
 }
 
-pub(crate) fn with_a_box(rows: &[&'static str]) -> Vec<&'static str> {
-    let mut rows = rows.to_vec();
+pub(crate) fn with_a_box() -> [&'static str; 14] {
+    let mut rows = HALL;
     rows[1] = "#....................................###";
     rows
 }
 
-impl Drawn {
-    fn cells(&self) -> Vec<u8> {
-        occupancy(&self.rows)
-    }
-
-    pub(crate) fn header(&self) -> MapHeader {
-        let mut header = MapHeader {
-            width: self.rows[0].len() as u32,
-            height: self.rows.len() as u32,
-            resolution_m: CELL_M,
-            name: MapName::new(self.name),
-            ..MapHeader::default()
-        };
-        header.map_id = header.id_of(&self.cells());
-        header
-    }
+pub(crate) fn ids(maps: &[DrawnMap]) -> Vec<u64> {
+    maps.iter().map(|map| map.header.map_id).collect()
 }
 
-pub(crate) fn ids(maps: &[Drawn]) -> Vec<u64> {
-    maps.iter().map(|map| map.header().map_id).collect()
-}
-
-pub(crate) fn searched(maps: &[Drawn]) -> u64 {
+pub(crate) fn searched(maps: &[DrawnMap]) -> u64 {
     searched_id(ids(maps))
 }
 
@@ -114,30 +100,28 @@ impl World {
         }
     }
 
-    pub(crate) fn of_map(isolated: &Isolated, map: &Drawn) -> Self {
+    pub(crate) fn of_map(isolated: &Isolated, map: &DrawnMap) -> Self {
         let world = World::new(isolated, false);
         world.serve_map(map);
         world
     }
 
     /// Creates a world with a set whose first map is displayed.
-    pub(crate) fn of_set(isolated: &Isolated, maps: &[Drawn]) -> Self {
+    pub(crate) fn of_set(isolated: &Isolated, maps: &[DrawnMap]) -> Self {
         let world = World::new(isolated, true);
         world.serve_set(maps);
         world.serve_map(&maps[0]);
         world
     }
 
-    pub(crate) fn serve_map(&self, map: &Drawn) {
-        let cells = map.cells();
-        self.maps.send(map.header(), &cells).unwrap();
+    pub(crate) fn serve_map(&self, map: &DrawnMap) {
+        map.send(&self.maps);
     }
 
-    pub(crate) fn serve_set(&self, maps: &[Drawn]) {
-        let cells: Vec<Vec<u8>> = maps.iter().map(Drawn::cells).collect();
-        let headers = maps.iter().map(Drawn::header);
+    pub(crate) fn serve_set(&self, maps: &[DrawnMap]) {
+        let maps = maps.iter().map(|map| (map.header, &map.cells[..]));
         let set = MapSet {
-            maps: headers.zip(cells.iter().map(|cells| &cells[..])).collect(),
+            maps: maps.collect(),
             transitions: Vec::new(),
         };
         let mut loan = self.sets.as_ref().unwrap().loan(set.bytes()).unwrap();
