@@ -1,3 +1,5 @@
+use std::f64::consts::FRAC_PI_2;
+
 use bytemuck::Zeroable;
 use messages::{FrameName, Pose2, Stamp};
 
@@ -29,11 +31,11 @@ fn scan(measured_ns: i64) -> ScanHeader {
     }
 }
 
-fn odometry(measured_ns: i64, yaw: f64) -> Odometry {
+fn odometry(child: &str, measured_ns: i64, yaw: f64) -> Odometry {
     Odometry {
         stamp: stamp(measured_ns),
         odom_from_child: turned(yaw),
-        child_frame: FrameName::new("laser"),
+        child_frame: FrameName::new(child),
         ..Zeroable::zeroed()
     }
 }
@@ -54,7 +56,7 @@ const BY_ODOMETRY: HeadingSource = HeadingSource::Odometry {
 fn history(readings: &[(i64, f64)]) -> History {
     let mut history = History::keeping(KEPT, &MotionConfig::default());
     for &(measured_ns, yaw) in readings {
-        history.on_odometry(&odometry(measured_ns, yaw));
+        history.on_odometry(&odometry("laser", measured_ns, yaw));
     }
     history
 }
@@ -67,7 +69,7 @@ fn the_delay_of_odometry_is_added_to_its_stamps() {
     };
     let mut history = History::keeping(KEPT, &motion);
     for (measured_ns, yaw) in [(0, 1.0), (100_000_000, 2.0)] {
-        history.on_odometry(&odometry(measured_ns, yaw));
+        history.on_odometry(&odometry("laser", measured_ns, yaw));
     }
     // The second sample is of 0.3 s.
     assert_eq!(heading(BY_ODOMETRY, &scan(250_000_000), &history), 1.5);
@@ -81,7 +83,7 @@ fn heading(source: HeadingSource, scan: &ScanHeader, history: &History) -> f64 {
 
 #[test]
 fn a_searched_heading_is_none_and_a_fixed_one_needs_no_history() {
-    let nothing = History::keeping(KEPT, &MotionConfig::default());
+    let nothing = history(&[]);
     let searched = HeadingSource::Searched.heading_of(&scan(5), &nothing);
     assert_eq!(searched.unwrap(), None);
     assert_eq!(heading(HeadingSource::Fixed(1.5), &scan(5), &nothing), 1.5);
@@ -94,11 +96,8 @@ fn odometry_is_the_newest_that_was_measured_before_the_scan() {
     assert_eq!(at(20), 0.2 + 0.5);
     assert_eq!(at(29), 0.2 + 0.5);
     assert_eq!(at(1000), 0.3 + 0.5);
-}
-
-#[test]
-fn a_recording_that_starts_again_finds_its_early_odometry() {
-    let history = history(&[(100, 0.1), (200, 0.2), (10, 0.7)]);
+    // A recording that starts again.
+    let history = self::history(&[(100, 0.1), (200, 0.2), (10, 0.7)]);
     assert_eq!(heading(BY_ODOMETRY, &scan(15), &history), 0.7 + 0.5);
 }
 
@@ -123,12 +122,8 @@ fn odometry_that_is_too_old_or_too_new_is_refused() {
 
 #[test]
 fn odometry_of_the_base_is_turned_by_the_mount() {
-    let mut history = History::keeping(KEPT, &MotionConfig::default());
-    let of_base = Odometry {
-        child_frame: FrameName::new("base_link"),
-        ..odometry(10, 0.25)
-    };
-    history.on_odometry(&of_base);
+    let mut history = history(&[]);
+    history.on_odometry(&odometry("base_link", 10, 0.25));
     let unknown = ScanHeader {
         base_from_laser: turned(1.0),
         ..scan(10)
@@ -139,7 +134,7 @@ fn odometry_of_the_base_is_turned_by_the_mount() {
         ..unknown
     };
     assert_eq!(heading(BY_ODOMETRY, &known, &history), 1.75);
-    history.on_odometry(&odometry(11, 0.25));
+    history.on_odometry(&odometry("laser", 11, 0.25));
     let later = ScanHeader {
         stamp: stamp(11),
         ..known
@@ -149,12 +144,8 @@ fn odometry_of_the_base_is_turned_by_the_mount() {
 
 #[test]
 fn the_laser_sits_on_what_the_odometry_is_about() {
-    let mut history = History::keeping(KEPT, &MotionConfig::default());
-    let of_base = Odometry {
-        child_frame: FrameName::new("base_link"),
-        ..odometry(10, std::f64::consts::FRAC_PI_2)
-    };
-    history.on_odometry(&of_base);
+    let mut history = history(&[]);
+    history.on_odometry(&odometry("base_link", 10, FRAC_PI_2));
     let mounted = ScanHeader {
         base_from_laser: Pose2 {
             x: 0.5,
@@ -165,7 +156,7 @@ fn the_laser_sits_on_what_the_odometry_is_about() {
         ..scan(12)
     };
     let pose = history.odom_from_laser(&mounted, 2).unwrap();
-    let expected = Pose::new(3.0, 4.5, std::f64::consts::FRAC_PI_2 + 0.25);
+    let expected = Pose::new(3.0, 4.5, FRAC_PI_2 + 0.25);
     assert!(pose.is_within(expected, 1e-12, 1e-12), "{pose:?}");
     let (age_ns, allowed_ns) = (2, 1);
     let old = HeadingError::OldOdometry { age_ns, allowed_ns };
@@ -174,7 +165,7 @@ fn the_laser_sits_on_what_the_odometry_is_about() {
 
 #[test]
 fn the_truth_has_exactly_the_time_of_the_scan() {
-    let mut history = History::keeping(KEPT, &MotionConfig::default());
+    let mut history = history(&[]);
     history.on_truth(&truth(10, 0.1));
     history.on_truth(&truth(20, 0.2));
     assert_eq!(heading(HeadingSource::Truth, &scan(10), &history), 0.1);
