@@ -165,7 +165,7 @@ impl Belief {
             TrackState::Unique => TrackReason::OnePlace,
             TrackState::Doubtful if self.unchecked => TrackReason::PoorFit,
             TrackState::Lost => self.lost_by,
-            TrackState::Searching if places.is_empty() => match self.is_searched {
+            TrackState::Searching if places.all().is_empty() => match self.is_searched {
                 true => TrackReason::NoPlace,
                 false => TrackReason::NoSearch,
             },

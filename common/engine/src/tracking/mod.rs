@@ -27,7 +27,6 @@
 mod belief;
 mod config;
 mod driven_path;
-mod limits;
 mod matching;
 mod nowhere;
 mod place;
@@ -266,7 +265,7 @@ impl PlaceTracker {
     /// scans.
     fn is_far(&self) -> bool {
         let believed = self.places.believed();
-        self.places.is_empty()
+        self.places.all().is_empty()
             || self.since_key.is_far(&self.config)
             || believed.is_some_and(|place| place.novelty >= 1.0)
     }

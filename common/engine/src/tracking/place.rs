@@ -7,9 +7,15 @@ use messages::{Hypothesis, TrackReason, Verdict};
 use nalgebra::{Matrix3, Rotation2, SymmetricEigen};
 
 use super::driven_path::DrivenPath;
-use super::limits::MAX;
 use super::seen::{Fitted, with_map_error};
 use crate::peaks::{Places, Target};
+
+/// Largest number of places kept, and the largest numbers of old and new ones (older than one key
+/// scan or not). Old places keep their slots, so that a search does not evict them and re-create
+/// them as new.
+pub(super) const MAX: usize = MAX_OLD + MAX_NEW;
+pub(super) const MAX_OLD: usize = 20;
+pub(super) const MAX_NEW: usize = 12;
 
 /// A place found by a search for one scan.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -10,9 +10,8 @@ use nalgebra::Matrix3;
 
 use super::TrackingConfig;
 use super::driven_path::DrivenPath;
-use super::limits::{EXPECTED, FARTHEST_BEHIND, MAX, MAX_NEW, MAX_OLD, SELDOM};
 use super::nowhere::{explained, nowhere_by_score};
-use super::place::Place;
+use super::place::{MAX, MAX_NEW, MAX_OLD, Place};
 use super::seen::{Fitted, Seen};
 use crate::peaks::{doubt_between, lead};
 pub(super) use hint::Hint;
@@ -22,6 +21,16 @@ use hint::WeighedHint;
 /// It is six times that of a single scan (`--lead-scale`), because a map has the same errors in
 /// each scan.
 const LEAD_SCALE: f64 = 0.15;
+
+/// Log odds against an event that can always happen between two key scans: the robot is carried
+/// away, or a sensor fails.
+const SELDOM: f64 = 7.0;
+
+/// Log odds against an operator who is wrong, or a robot that was moved while switched off.
+const EXPECTED: f64 = 3.5;
+
+/// Log odds behind the best at which a place is dropped.
+const FARTHEST_BEHIND: f64 = 12.0;
 
 /// Loss of log weight per squared deviation from odometry.
 const BY_DEVIATION: f64 = 0.1;
@@ -99,10 +108,6 @@ impl Places {
             config,
             ..Places::default()
         }
-    }
-
-    pub(super) fn is_empty(&self) -> bool {
-        self.kept.is_empty()
     }
 
     /// All places, best first.
@@ -186,19 +191,15 @@ impl Places {
         seen: &[Seen<'_>],
         (path, since_key): (&DrivenPath, &DrivenPath),
     ) {
-        let TrackingConfig {
-            odometry_error,
-            restart_fall,
-            ..
-        } = self.config;
+        let config = self.config;
         let mut kept = self.kept.iter_mut();
         let Some(place) = kept.find(|place| self.believed == Some(place.id)) else {
             return;
         };
         let seen = &seen[place.map as usize];
-        let predicted = path.predict((place.pose, place.covariance), odometry_error);
+        let predicted = path.predict((place.pose, place.covariance), config.odometry_error);
         let mut fitted = seen.settle(predicted);
-        if fitted.score < place.mean - restart_fall {
+        if fitted.score < place.mean - config.restart_fall {
             fitted = seen.settle_turned(predicted, fitted);
         }
         place.predicted = predicted;
@@ -207,7 +208,7 @@ impl Places {
         if since_key.is_rest() && fitted.off < GATE {
             place.pose = before;
         }
-        place.judge(since_key, &self.config);
+        place.judge(since_key, &config);
     }
 
     /// Weighs all places, and the candidates of the same scan, at a key scan. All places except the

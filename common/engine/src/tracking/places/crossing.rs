@@ -22,13 +22,12 @@ impl Places {
             let log_weight = here.log_weight - best.against((map, fitted.score), cap);
             let at = (map, fitted.pose);
             let mut kept = self.kept.iter_mut();
-            match kept.find(|place| place.is_within(at, SAME_M, SAME_RADIANS)) {
-                Some(place) => {
-                    place.crossed_from = Some(here.map);
-                    place.log_weight = place.log_weight.max(log_weight);
-                }
-                None => self.add((map, &fitted), log_weight).crossed_from = Some(here.map),
-            }
+            let place = match kept.find(|place| place.is_within(at, SAME_M, SAME_RADIANS)) {
+                Some(place) => place,
+                None => self.add((map, &fitted), log_weight),
+            };
+            place.crossed_from = Some(here.map);
+            place.log_weight = place.log_weight.max(log_weight);
         }
     }
 
