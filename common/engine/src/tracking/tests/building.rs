@@ -1,4 +1,4 @@
-//! Drawn buildings in which a robot drives.
+//! Drawn buildings, and a robot that drives in them.
 
 use super::*;
 
@@ -7,29 +7,23 @@ const BEAMS: usize = 180;
 /// A building in which scans are simulated and searched.
 pub(super) struct Building {
     grid: Grid,
-    distance_field: DistanceField,
-    vote_search: VoteSearch,
-    space: Space,
+    localizer: Localizer,
 }
 
 /// Makes a building. Its walls must be ragged, so that its map does not count as drawn.
-pub(super) fn building(rows: &[&str]) -> Building {
+fn building(rows: &[&str]) -> Building {
     let (width, height, cells) = crate::grid::drawn::occupancy(rows);
-    let frame = GridFrame {
-        resolution_m: RESOLUTION_M,
-        map_from_grid: Pose::IDENTITY,
-    };
-    let rules = CellRules::default();
-    let grid = Grid::new(width, height, &cells, rules).unwrap();
-    let config = VoteSearchConfig {
-        search_cell: 0.0,
-        ..VoteSearchConfig::default()
+    let map = Map::new(RESOLUTION_M, Pose::IDENTITY, (width, height), &cells);
+    let settings = Settings {
+        vote_search: VoteSearchConfig {
+            search_cell: 0.0,
+            ..VoteSearchConfig::default()
+        },
+        ..Settings::default()
     };
     Building {
-        distance_field: DistanceField::new(frame, (width, height), &cells, rules).unwrap(),
-        vote_search: VoteSearch::new(frame, grid.clone(), config, Prior::None).unwrap(),
-        space: Space::new(360, RESOLUTION_M, width, height).unwrap(),
-        grid,
+        grid: Grid::new(width, height, &cells, map.rules).unwrap(),
+        localizer: Localizer::new(map, settings).unwrap(),
     }
 }
 
@@ -57,97 +51,169 @@ impl Building {
         (0..BEAMS).map(read).collect()
     }
 
-    pub(super) fn ends(&self, pose: Pose) -> Ends {
-        self.ends_of(&self.ranges(pose))
+    fn map(&self) -> &PreparedMap {
+        &self.localizer.maps()[0]
     }
 
-    pub(super) fn ends_of(&self, ranges: &[f32]) -> Ends {
-        Ends::new(&scan(ranges), &self.space, &BeamConfig::default()).unwrap()
+    pub(super) fn ends(&self, ranges: &[f32]) -> Ends {
+        self.map().ends(&scan(ranges)).unwrap()
     }
 
-    pub(super) fn found(&self, pose: Pose) -> Vec<Candidate> {
-        self.found_of(&self.ranges(pose))
-    }
-
-    pub(super) fn found_of(&self, ranges: &[f32]) -> Vec<Candidate> {
-        let outcome = self.vote_search.search(&scan(ranges), &|| false);
-        let outcome = outcome.unwrap().unwrap();
-        let input = PeakInput::of(&outcome, self.vote_search.frame());
-        let mut workspace = peaks::Workspace::default();
-        let beams = BeamConfig::default();
-        let find = |ends: &mut Ends| ends.find(&scan(ranges), &self.space, &beams);
-        let config = PeakConfig::default();
-        let judged = workspace.judge(&input, &self.distance_field, &config, find);
-        let places = judged.unwrap().places;
+    pub(super) fn found(&self, ranges: &[f32]) -> Vec<Candidate> {
+        let mut workspace = Workspace::default();
+        let answer = self.localizer.locate(&mut workspace, &scan(ranges));
         let target = Target::of(None, false);
-        Candidate::of_places(places, target, target)
+        Candidate::of_places(answer.unwrap().places, target, target)
     }
 
     pub(super) fn seen<'a>(&'a self, ends: &'a Ends, fit: &'a FitConfig) -> Seen<'a> {
         Seen {
-            distance_field: &self.distance_field,
+            distance_field: self.map().distance_field(),
             ends,
             fit,
         }
     }
+}
 
-    /// Gives a tracker a scan, and what a search finds, by the one that was needed, which is
-    /// returned.
-    pub(super) fn see(
-        &self,
-        tracker: &mut PlaceTracker,
-        ends: &Ends,
-        moved: Option<Pose>,
-        find: impl FnOnce(Need) -> Option<Vec<Candidate>>,
-    ) -> Need {
-        let fit = FitConfig::default();
-        let seen = [self.seen(ends, &fit)];
-        let need = tracker.begin(&seen, 1, moved);
-        tracker.finish(&seen, find(need).as_deref());
-        need
+/// A robot in a building with one or several maps, and its tracker.
+pub(super) struct Robot {
+    pub(super) maps: Vec<Building>,
+    /// Number of the map on which the robot is.
+    pub(super) map: usize,
+    pub(super) pose: Pose,
+    pub(super) tracker: PlaceTracker,
+    pub(super) fit: FitConfig,
+}
+
+impl Robot {
+    /// A robot at [`START`] on the first map; its tracker knows nothing.
+    pub(super) fn on(maps: &[&[&str]]) -> Self {
+        Robot {
+            maps: maps.iter().map(|rows| building(rows)).collect(),
+            map: 0,
+            pose: START,
+            tracker: PlaceTracker::new(TrackingConfig::default()),
+            fit: FitConfig::default(),
+        }
     }
 
-    /// Gives a tracker the scan at a pose; returns the search that was needed.
-    pub(super) fn step(
-        &self,
-        tracker: &mut PlaceTracker,
-        truth: Pose,
+    /// A robot that its tracker found and followed for some steps.
+    pub(super) fn tracked(rows: &[&str], steps: usize) -> Self {
+        let mut robot = Robot::on(&[rows]);
+        robot.scan(None);
+        robot.drive(steps);
+        robot
+    }
+
+    /// A robot in [`UNLIKE`] that its tracker followed from a trusted pose for some steps.
+    pub(super) fn followed(steps: usize) -> Self {
+        let mut robot = Robot::on(&[&UNLIKE]);
+        robot.start();
+        robot.drive(steps);
+        assert_eq!(robot.state(), Unique);
+        robot
+    }
+
+    /// Starts the tracker at the true pose.
+    pub(super) fn start(&mut self) {
+        let ends = self.maps[0].ends(&self.ranges());
+        let seen: Vec<_> = self
+            .maps
+            .iter()
+            .map(|map| map.seen(&ends, &self.fit))
+            .collect();
+        let covariance = Covariance::from_deviations(0.1, 0.1, 0.1);
+        self.tracker.start_at(&seen, (0, self.pose), covariance);
+        self.scan(Some(Pose::IDENTITY));
+    }
+
+    /// Gives the tracker the scan at the pose, and what a search for it finds; returns the search
+    /// that was needed.
+    pub(super) fn scan(&mut self, moved: Option<Pose>) -> Need {
+        self.see(&self.ranges(), moved, |need| need == Need::ThisScan)
+    }
+
+    /// Does the same without answers to searches.
+    pub(super) fn scan_unanswered(&mut self, moved: Option<Pose>) -> Need {
+        self.see(&self.ranges(), moved, |_| false)
+    }
+
+    /// Gives the tracker a scan and, if it is searched, what a search of all maps finds.
+    pub(super) fn see(
+        &mut self,
+        ranges: &[f32],
         moved: Option<Pose>,
+        is_searched: fn(Need) -> bool,
     ) -> Need {
-        self.see(tracker, &self.ends(truth), moved, |need| {
-            (need == Need::ThisScan).then(|| self.found(truth))
+        let ends = self.maps[0].ends(ranges);
+        self.see_ends(&ends, moved, |maps, need| {
+            let on_maps = (0..).zip(maps).flat_map(|(map, on)| {
+                let found = on.found(ranges).into_iter();
+                found.map(move |candidate| Candidate { map, ..candidate })
+            });
+            is_searched(need).then(|| on_maps.collect())
         })
     }
 
-    /// A tracker that started at the trusted pose [`START`] and followed the robot, and the last pose.
-    pub(super) fn followed(&self, steps: usize) -> (PlaceTracker, Pose) {
-        let (ends, fit) = (self.ends(START), FitConfig::default());
-        let mut tracker = PlaceTracker::new(TrackingConfig::default());
-        let covariance = Covariance::from_deviations(0.1, 0.1, 0.1);
-        tracker.start_at(&[self.seen(&ends, &fit)], (0, START), covariance);
-        self.step(&mut tracker, START, Some(Pose::IDENTITY));
-        let end = self.drive(&mut tracker, START, steps);
-        assert_eq!(tracker.report().state, Unique);
-        (tracker, end)
+    /// Gives the tracker the ends of a scan, and what is found by the search that was needed, which
+    /// is returned.
+    pub(super) fn see_ends(
+        &mut self,
+        ends: &Ends,
+        moved: Option<Pose>,
+        find: impl FnOnce(&[Building], Need) -> Option<Vec<Candidate>>,
+    ) -> Need {
+        let seen: Vec<_> = self
+            .maps
+            .iter()
+            .map(|map| map.seen(ends, &self.fit))
+            .collect();
+        let tracker = &mut self.tracker;
+        let need = tracker.begin(&seen, 1, moved);
+        tracker.finish(&seen, find(&self.maps, need).as_deref());
+        need
     }
 
-    /// A tracker that found the robot at [`START`] by itself and followed it, and the last pose.
-    pub(super) fn tracked(&self, steps: usize) -> (PlaceTracker, Pose) {
-        let mut tracker = PlaceTracker::new(TrackingConfig::default());
-        self.step(&mut tracker, START, None);
-        let end = self.drive(&mut tracker, START, steps);
-        (tracker, end)
+    /// Moves the robot by a step that odometry measures; returns the search that was needed.
+    pub(super) fn step(&mut self, step: Pose) -> Need {
+        self.pose = self.pose.then(step);
+        self.scan(Some(step))
     }
 
     /// Drives straight on by steps of 0.3 m.
-    pub(super) fn drive(&self, tracker: &mut PlaceTracker, from: Pose, steps: usize) -> Pose {
-        let step = Pose::new(0.3, 0.0, 0.0);
-        let mut pose = from;
+    pub(super) fn drive(&mut self, steps: usize) {
         for _ in 0..steps {
-            pose = pose.then(step);
-            self.step(tracker, pose, Some(step));
+            self.step(AHEAD);
         }
-        pose
+    }
+
+    /// Ranges of the laser at the pose.
+    pub(super) fn ranges(&self) -> Vec<f32> {
+        self.maps[self.map].ranges(self.pose)
+    }
+
+    pub(super) fn state(&self) -> TrackState {
+        self.tracker.report().state
+    }
+
+    /// State of the tracker and its reason.
+    pub(super) fn said(&self) -> (TrackState, TrackReason) {
+        let report = self.tracker.report();
+        (report.state, report.reason)
+    }
+
+    pub(super) fn is_at(&self, pose: Pose) -> bool {
+        let reported = self.tracker.report().pose;
+        reported.is_some_and(|reported| reported.is_within(pose, 0.1, 0.05))
+    }
+
+    /// Checks that the tracker is sure of the true pose.
+    pub(super) fn check_found(&self) {
+        let report = self.tracker.report();
+        assert!(
+            report.state == Unique && self.is_at(self.pose),
+            "{report:?}"
+        );
     }
 }
 

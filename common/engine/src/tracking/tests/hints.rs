@@ -9,151 +9,123 @@ fn pointed() -> Covariance {
 
 /// The corresponding pose in the other half of the symmetric building [`ALIKE`].
 fn twin(pose: Pose) -> Pose {
-    let (width, height) = (ALIKE[0].len() as f64, ALIKE.len() as f64);
-    let (x, y) = (
-        width * RESOLUTION_M - pose.x,
-        height * RESOLUTION_M - pose.y,
-    );
+    let side = |cells: usize| RESOLUTION_M * cells as f64;
+    let (x, y) = (side(ALIKE[0].len()) - pose.x, side(ALIKE.len()) - pose.y);
     Pose::new(x, y, pose.yaw + PI)
 }
 
-/// Gives a tracker the scan of a standing robot, and the answers to all searches in time; returns
-/// the search that was needed.
-fn stand(building: &Building, tracker: &mut PlaceTracker, truth: Pose) -> Need {
-    let still = Some(Pose::IDENTITY);
-    building.see(tracker, &building.ends(truth), still, |need| {
-        (need != Need::Nothing).then(|| building.found(truth))
-    })
-}
+impl Robot {
+    fn expect(&mut self, pose: Pose) {
+        self.tracker.expect((0, pose), pointed());
+    }
 
-fn believes(tracker: &PlaceTracker, pose: Pose) -> bool {
-    let state = tracker.report().state;
-    matches!(state, Unique | Doubtful) && is_at(tracker, pose)
+    /// Gives the tracker the scan of the standing robot, and the answers to all searches in time;
+    /// returns the search that was needed.
+    fn stand(&mut self) -> Need {
+        self.see(&self.ranges(), STILL, |need| need != Need::Nothing)
+    }
+
+    fn believes(&self, pose: Pose) -> bool {
+        matches!(self.state(), Unique | Doubtful) && self.is_at(pose)
+    }
 }
 
 #[test]
 fn an_expected_pose_is_believed_where_a_scan_confirms_it() {
-    let building = building(&ALIKE);
-    let mut tracker = PlaceTracker::new(TrackingConfig::default());
-    tracker.expect((0, START), pointed());
-    building.step(&mut tracker, START, None);
-    assert_eq!(tracker.report().state, Unique);
-    assert!(is_at(&tracker, START));
-    let mut wrong = PlaceTracker::new(TrackingConfig::default());
-    wrong.expect(
-        (0, Pose::new(3.0, 0.3, 1.0)),
+    let mut robot = Robot::on(&[&ALIKE]);
+    robot.expect(START);
+    robot.scan(None);
+    robot.check_found();
+    let mut robot = Robot::on(&[&ALIKE]);
+    let (wrong, covariance) = (
+        Pose::new(3.0, 0.3, 1.0),
         Covariance::from_deviations(0.1, 0.1, 0.1),
     );
-    building.step(&mut wrong, START, None);
-    assert_eq!(wrong.report().state, Searching);
-    building.drive(&mut wrong, START, 4);
+    robot.tracker.expect((0, wrong), covariance);
+    robot.scan(None);
+    assert_eq!(robot.state(), Searching);
+    robot.drive(4);
     // It is one of the two places that look alike, or none is believed.
-    assert_ne!(wrong.report().state, Unique);
+    assert_ne!(robot.state(), Unique);
 }
 
 #[test]
 fn a_hint_near_the_pose_that_is_believed_changes_nothing() {
-    let building = building(&UNLIKE);
-    let (mut tracker, at) = building.followed(5);
-    let before = tracker.report();
+    let mut robot = Robot::followed(5);
+    let since_ns = robot.tracker.report().since_ns;
     for off in [Pose::new(0.3, -0.2, 0.1), Pose::new(-0.6, 0.0, 0.2)] {
-        tracker.expect((0, at.then(off)), pointed());
-        assert_eq!(stand(&building, &mut tracker, at), Need::Nothing);
-        let after = tracker.report();
-        assert_eq!(
-            (after.state, after.since_ns),
-            (before.state, before.since_ns)
-        );
-        assert!(is_at(&tracker, at));
+        robot.expect(robot.pose.then(off));
+        assert_eq!(robot.stand(), Need::Nothing);
+        robot.check_found();
+        assert_eq!(robot.tracker.report().since_ns, since_ns);
     }
 }
 
 #[test]
 fn a_hint_near_the_one_that_is_tried_starts_nothing_anew() {
-    let building = building(&UNLIKE);
-    let mut tracker = PlaceTracker::new(TrackingConfig::default());
-    tracker.expect((0, START), pointed());
-    let still = Some(Pose::IDENTITY);
-    assert_eq!(
-        unanswered(&building, &mut tracker, START, still),
-        Need::ThisScan
-    );
-    tracker.expect((0, START.then(Pose::new(0.2, 0.1, 0.1))), pointed());
+    let mut robot = Robot::on(&[&UNLIKE]);
+    robot.expect(START);
+    assert_eq!(robot.scan_unanswered(STILL), Need::ThisScan);
+    robot.expect(START.then(Pose::new(0.2, 0.1, 0.1)));
     // The robot stands, and the next key scan decides.
-    assert_eq!(stand(&building, &mut tracker, START), Need::Nothing);
-    let end = building.drive(&mut tracker, START, 2);
-    assert_eq!(tracker.report().state, Unique);
-    assert!(is_at(&tracker, end));
+    assert_eq!(robot.stand(), Need::Nothing);
+    robot.drive(2);
+    robot.check_found();
 }
 
 #[test]
 fn wrong_hints_leave_the_pose_as_it_is() {
-    let building = building(&UNLIKE);
-    let (mut tracker, at) = building.followed(5);
+    let mut robot = Robot::followed(5);
     for i in 0..60 {
-        let (row, column) = (i % 4, i / 4 % 5);
-        let wrong = Pose::new(
-            0.4 + 0.9 * f64::from(column),
-            1.9 - 0.4 * f64::from(row),
-            1.2 + f64::from(i),
-        );
-        tracker.expect((0, wrong), Covariance::from_deviations(0.1, 0.1, 0.1));
-        stand(&building, &mut tracker, at);
-        assert!(
-            believes(&tracker, at),
-            "{i}: {:?} {wrong:?}",
-            tracker.report()
-        );
+        let (row, column) = (f64::from(i % 4), f64::from(i / 4 % 5));
+        let wrong = Pose::new(0.4 + 0.9 * column, 1.9 - 0.4 * row, 1.2 + f64::from(i));
+        let covariance = Covariance::from_deviations(0.1, 0.1, 0.1);
+        robot.tracker.expect((0, wrong), covariance);
+        robot.stand();
+        let report = robot.tracker.report();
+        assert!(robot.believes(robot.pose), "{i}: {report:?} {wrong:?}");
     }
-    let end = building.drive(&mut tracker, at, 6);
-    assert_eq!(tracker.report().state, Unique);
-    assert!(is_at(&tracker, end));
+    robot.drive(6);
+    robot.check_found();
 }
 
 #[test]
 fn a_hint_at_a_place_that_looks_alike_is_taken_up_and_a_pose_is_there_all_the_while() {
-    let building = building(&ALIKE);
-    let mut tracker = PlaceTracker::new(TrackingConfig::default());
-    tracker.expect((0, START), pointed());
-    stand(&building, &mut tracker, START);
-    assert_eq!(tracker.report().state, Unique);
+    let mut robot = Robot::on(&[&ALIKE]);
+    robot.expect(START);
+    robot.stand();
+    assert_eq!(robot.state(), Unique);
     let other = twin(START);
-    tracker.expect((0, other.then(Pose::new(0.2, 0.0, 0.1))), pointed());
+    robot.expect(other.then(Pose::new(0.2, 0.0, 0.1)));
     let mut scans = 0;
-    while !is_at(&tracker, other) {
-        assert!(
-            believes(&tracker, START) && scans < 4,
-            "{:?}",
-            tracker.report()
-        );
-        stand(&building, &mut tracker, START);
+    while !robot.is_at(other) {
+        let report = robot.tracker.report();
+        assert!(robot.believes(START) && scans < 4, "{report:?}");
+        robot.stand();
         scans += 1;
     }
-    assert_eq!(tracker.report().state, Unique);
+    assert_eq!(robot.state(), Unique);
 }
 
 #[test]
 fn a_robot_that_was_carried_away_is_believed_where_a_hint_says_it_is() {
-    let building = building(&UNLIKE);
-    let (mut tracker, _) = building.followed(5);
-    let elsewhere = Pose::new(4.0, 1.9, PI);
-    tracker.expect((0, elsewhere.then(Pose::new(0.2, 0.1, 0.1))), pointed());
+    let mut robot = Robot::followed(5);
+    robot.pose = ELSEWHERE;
+    robot.expect(ELSEWHERE.then(Pose::new(0.2, 0.1, 0.1)));
     for _ in 0..3 {
-        stand(&building, &mut tracker, elsewhere);
+        robot.stand();
     }
-    assert_eq!(tracker.report().state, Unique);
-    assert!(is_at(&tracker, elsewhere));
+    robot.check_found();
 }
 
 #[test]
 fn a_hint_is_not_taken_up_without_a_search() {
-    let building = building(&ALIKE);
-    let mut tracker = PlaceTracker::new(TrackingConfig::default());
-    tracker.expect((0, START), pointed());
-    stand(&building, &mut tracker, START);
-    tracker.expect((0, twin(START)), pointed());
+    let mut robot = Robot::on(&[&ALIKE]);
+    robot.expect(START);
+    robot.stand();
+    robot.expect(twin(START));
     for _ in 0..6 {
-        unanswered(&building, &mut tracker, START, Some(Pose::IDENTITY));
-        assert!(believes(&tracker, START));
+        robot.scan_unanswered(STILL);
+        assert!(robot.believes(START));
     }
 }
