@@ -16,7 +16,7 @@ use geometry::Pose;
 use messages::{PoseHeader, ScanHeader, Stamp, TrackReason, TrackState};
 use transport::{Flow, GapCounter, Graph, Health, TransportError, with_causes};
 
-use crate::memory::{Memory, Remembered};
+use crate::memory::{self, Remembered};
 use crate::message::{Tracked, nothing};
 use crate::queue::{Answers, Scans};
 use crate::world::Worlds;
@@ -38,8 +38,8 @@ const OTHER_SETTINGS: &str = "accumulator and peak_extractor read scans by other
 
 pub fn run(graph: &Graph, config: &Config) -> Result<(), TrackerError> {
     let inputs = Inputs::open(graph)?;
-    let memory = config.remember.as_deref().map(Memory::new);
-    let (remembered, unusable) = match memory.as_ref().map_or(Ok(None), Memory::load) {
+    let file = config.remember.as_deref();
+    let (remembered, unusable) = match file.map_or(Ok(None), memory::load) {
         Ok(found) => (found, None),
         Err(error) => (None, Some(error)),
     };
@@ -64,7 +64,6 @@ pub fn run(graph: &Graph, config: &Config) -> Result<(), TrackerError> {
         gaps: GapCounter::default(),
         last_refusal: String::new(),
         last_state: None,
-        memory,
         remembered,
         remembered_at: Instant::now(),
         outputs: Outputs::open(graph, config.rate)?,
@@ -110,7 +109,6 @@ struct Node {
     gaps: GapCounter,
     last_refusal: String,
     last_state: Option<TrackState>,
-    memory: Option<Memory>,
     remembered: Option<Remembered>,
     remembered_at: Instant,
     outputs: Outputs,
@@ -342,7 +340,7 @@ impl Node {
 
     /// Saves the last unique pose, periodically and at the end.
     fn remember(&mut self, is_end: bool) -> Result<(), TrackerError> {
-        let Some(memory) = &self.memory else {
+        let Some(file) = &self.config.remember else {
             return Ok(());
         };
         let is_due = is_end || self.remembered_at.elapsed() >= REMEMBERED_EVERY;
@@ -354,13 +352,13 @@ impl Node {
         };
         let header = last.header();
         self.remembered_at = Instant::now();
-        let saved = memory.save(&Remembered {
+        let pose = Remembered {
             map_id: format!("{:016x}", last.map_id),
             stamp_ns: last.stamp.measured_ns,
             map_from_base: header.map_from_base.into(),
             covariance: header.base_covariance,
-        });
-        match saved {
+        };
+        match memory::save(file, &pose) {
             Err(error) if !is_end => Ok(self.refuse(&with_causes(&error))?),
             other => other,
         }
