@@ -27,12 +27,8 @@ pub enum CacheError {
          chmod 700 makes it private"
     )]
     SharedFolder { path: PathBuf, mode: u32 },
-    #[error("cannot {action} {path}")]
-    File {
-        action: &'static str,
-        path: PathBuf,
-        source: io::Error,
-    },
+    #[error(transparent)]
+    File(TrustError),
     #[error("the index is not read, and the map is prepared again")]
     Untrusted(#[from] TrustError),
     #[error("{path} cannot be used, and the map is prepared again")]
@@ -46,16 +42,9 @@ pub enum CacheError {
 }
 
 /// Returns a function that converts an error of a file operation.
-pub(crate) fn failed(
-    action: &'static str,
-    path: &Path,
-) -> impl Fn(io::Error) -> CacheError + use<> {
-    let path = path.to_owned();
-    move |source| CacheError::File {
-        action,
-        path: path.clone(),
-        source,
-    }
+pub(crate) fn failed(action: &'static str, path: &Path) -> impl Fn(io::Error) -> CacheError {
+    let failed = trusted_files::failed(action, path);
+    move |source| CacheError::File(failed(source))
 }
 
 /// Error in the content of a file.

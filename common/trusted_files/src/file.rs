@@ -72,7 +72,7 @@ fn code(error: &io::Error) -> i32 {
 }
 
 /// Returns a function that converts an error of a file operation.
-pub(crate) fn failed(action: &'static str, path: &Path) -> impl Fn(io::Error) -> TrustError {
+pub fn failed(action: &'static str, path: &Path) -> impl Fn(io::Error) -> TrustError {
     move |source| TrustError::File {
         action,
         path: path.to_owned(),

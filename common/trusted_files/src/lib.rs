@@ -9,7 +9,7 @@ mod file;
 mod folder;
 
 pub use error::TrustError;
-pub use file::{open, read};
+pub use file::{failed, open, read};
 pub use folder::check_place;
 
 use std::fs::Metadata;
