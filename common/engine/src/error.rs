@@ -1,8 +1,8 @@
 //! Errors of the engine.
 
 use geometry::Pose;
+use messages::limits::{MAX_CELLS, MAX_ORIGIN_M, MAX_RESOLUTION_M, MAX_SIDE, MIN_RESOLUTION_M};
 
-use crate::grid::{MAX_CELLS, MAX_ORIGIN_M, MAX_RESOLUTION_M, MAX_SIDE, MIN_RESOLUTION_M};
 use crate::joined::MAX_APART_NS;
 use crate::tracker::MIN_PERIOD_NS;
 

@@ -8,6 +8,7 @@ mod frame;
 mod pooling;
 
 use messages::BoundaryCell;
+use messages::limits::{MAX_CELLS, MAX_SIDE, resolution_is_allowed};
 
 use crate::EngineError;
 pub use messages::CellRules;
@@ -15,24 +16,6 @@ pub use messages::CellRules;
 pub(crate) use cell_set::{CellSet, WORD, ones};
 pub use frame::GridFrame;
 pub use pooling::{Pooled, pooling};
-
-/// Largest number of cells along a side: positions fit in 15 bits, ray lengths in 16.
-pub const MAX_SIDE: usize = 32_767;
-
-// The limits below equal those of map files in crate `map` (a test compares them), so that every
-// map that can be loaded is accepted here.
-
-/// Largest number of cells, against damaged headers.
-pub const MAX_CELLS: usize = 400_000_000;
-
-/// Shortest side of a cell, in metres.
-pub const MIN_RESOLUTION_M: f64 = 0.001;
-
-/// Longest side of a cell, in metres.
-pub const MAX_RESOLUTION_M: f64 = 10.0;
-
-/// Largest distance of a grid's origin from that of the map along each axis, in metres.
-pub const MAX_ORIGIN_M: f64 = 1e8;
 
 /// Class of a cell, by its effect on rays.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, bytemuck::NoUninit)]
@@ -156,6 +139,18 @@ impl Grid {
         cells.map(|(i, _)| (i % self.width, i / self.width))
     }
 
+    /// Checks that a scan can be matched with the grid, and that there is room for the robot.
+    ///
+    /// # Errors
+    /// If no cell is occupied, or none is free.
+    pub fn check_use(&self) -> Result<(), EngineError> {
+        match (self.occupied, self.free_cells) {
+            (0, _) => Err(EngineError::NoOccupiedCell),
+            (_, 0) => Err(EngineError::NoFreeCell),
+            _ => Ok(()),
+        }
+    }
+
     /// Number of free cells, the paper's n; unknown ones do not count.
     pub fn free_cells(&self) -> usize {
         self.free_cells
@@ -202,11 +197,11 @@ impl Grid {
 }
 
 fn check_sides(width: usize, height: usize) -> Result<(), EngineError> {
-    let in_range = 1..=MAX_SIDE;
+    let in_range = 1..=MAX_SIDE as usize;
     if !in_range.contains(&width) || !in_range.contains(&height) {
         return Err(EngineError::GridSides { width, height });
     }
-    if width * height > MAX_CELLS {
+    if (width * height) as u64 > MAX_CELLS {
         return Err(EngineError::GridSize { width, height });
     }
     Ok(())
@@ -227,10 +222,10 @@ fn check_cells(width: usize, height: usize, occupancy: &[u8]) -> Result<(), Engi
 
 /// Checks the side of a cell; NaN is out of range.
 pub(crate) fn check_resolution(metres: f64) -> Result<(), EngineError> {
-    if (MIN_RESOLUTION_M..=MAX_RESOLUTION_M).contains(&metres) {
-        return Ok(());
+    match resolution_is_allowed(metres) {
+        true => Ok(()),
+        false => Err(EngineError::Resolution(metres)),
     }
-    Err(EngineError::Resolution(metres))
 }
 
 /// Small worlds for tests, drawn as text: one line per row, highest y first.
@@ -306,15 +301,7 @@ mod tests {
             cells,
         };
         assert_eq!(refused, Err(expected));
-        assert!(Grid::new(MAX_SIDE + 1, 1, &vec![0; MAX_SIDE + 1], rules).is_err());
-    }
-
-    #[test]
-    fn the_limits_are_those_of_map_files() {
-        assert_eq!(MAX_SIDE, map::MAX_SIDE as usize);
-        assert_eq!(MAX_CELLS as u64, map::MAX_CELLS);
-        assert_eq!(MIN_RESOLUTION_M, map::MIN_RESOLUTION_M);
-        assert_eq!(MAX_RESOLUTION_M, map::MAX_RESOLUTION_M);
-        assert_eq!(MAX_ORIGIN_M, map::MAX_ORIGIN_M);
+        let width = MAX_SIDE as usize + 1;
+        assert!(Grid::new(width, 1, &vec![0; width], rules).is_err());
     }
 }

@@ -1,7 +1,5 @@
 //! Mount of a laser on the robot.
 
-use std::error::Error;
-use std::fmt::{self, Display};
 use std::str::FromStr;
 
 use crate::Pose;
@@ -23,20 +21,12 @@ pub struct Mount {
 const MAX_DISTANCE_M: f64 = 10.0;
 
 /// Error of a text that is not a mount.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error(
+    "expected are three finite numbers, X,Y,YAW_DEG, within {MAX_DISTANCE_M} metres (not \
+     millimetres) of the base, and of a laser upside down 180 as the fourth"
+)]
 pub struct MountError;
-
-impl Display for MountError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(
-            f,
-            "expected are three finite numbers, X,Y,YAW_DEG, within {MAX_DISTANCE_M} metres (not \
-             millimetres) of the base, and of a laser upside down 180 as the fourth"
-        )
-    }
-}
-
-impl Error for MountError {}
 
 impl FromStr for Mount {
     type Err = MountError;

@@ -2,8 +2,10 @@
 
 use std::path::Path;
 
+use messages::limits::size_is_allowed;
+
 use crate::MapError;
-use crate::limits::{size_is_allowed, sizes_allowed};
+use crate::grid::sizes_allowed;
 
 /// Number of bytes read to check the header; no header is longer.
 pub(crate) const HEAD_BYTES: u64 = 64 << 10;

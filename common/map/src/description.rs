@@ -10,11 +10,11 @@ use std::fmt::Display;
 use std::path::{Path, PathBuf};
 
 use geometry::Pose;
+use messages::limits::{origin_is_allowed, resolution_is_allowed};
 use serde::de::IgnoredAny;
 use serde_saphyr::{MessageFormatter, Spanned, UserMessageFormatter};
 
 use crate::keys::{Keys, Scalar};
-use crate::limits::{origin_is_allowed, resolution_is_allowed};
 use crate::rules::{Mode, Rules, Thresholds};
 use crate::{MAX_ORIGIN_M, MAX_RESOLUTION_M, MIN_RESOLUTION_M, MapError, UnknownKey};
 

@@ -1,9 +1,9 @@
 //! Occupancy grid and its id.
 
 use geometry::Pose;
+use messages::limits::{origin_is_allowed, resolution_is_allowed, size_is_allowed};
 
-use crate::limits::{origin_is_allowed, resolution_is_allowed, size_is_allowed, sizes_allowed};
-use crate::{MAX_ORIGIN_M, MAX_RESOLUTION_M, MIN_RESOLUTION_M, MapError};
+use crate::{MAX_CELLS, MAX_ORIGIN_M, MAX_RESOLUTION_M, MAX_SIDE, MIN_RESOLUTION_M, MapError};
 
 pub use messages::UNKNOWN;
 
@@ -90,6 +90,11 @@ impl OccupancyGrid {
     }
 }
 
+/// Says which sides [`size_is_allowed`] accepts.
+pub(crate) fn sizes_allowed() -> String {
+    format!("allowed: sides of 1..={MAX_SIDE} and at most {MAX_CELLS} cells")
+}
+
 #[cfg(test)]
 mod tests {
     use std::f64::consts::{FRAC_PI_2, TAU};
@@ -119,7 +124,12 @@ mod tests {
         for resolution in [0.0, -0.05, f64::NAN, f64::INFINITY, 0.000_999, 10.001] {
             check((2, 3), resolution, at, vec![0; 6], "a resolution of");
         }
-        for (x, y, yaw) in [(f64::NAN, 0.0, 0.0), (0.0, 1.1e8, 0.0), (0.0, 0.0, 90.0)] {
+        for (x, y, yaw) in [
+            (f64::NAN, 0.0, 0.0),
+            (0.0, 1.1e8, 0.0),
+            (0.0, 0.0, 7.0),
+            (0.0, 0.0, f64::NEG_INFINITY),
+        ] {
             let pose = Pose::new(x, y, yaw);
             check((2, 3), 0.05, pose, vec![0; 6], "an origin at");
         }

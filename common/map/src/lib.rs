@@ -14,7 +14,6 @@ mod foreign;
 mod grid;
 mod keys;
 mod kind;
-mod limits;
 mod load;
 mod memory;
 mod pgm;
@@ -28,9 +27,9 @@ pub use error::MapError;
 pub use foreign::check_kind;
 pub use grid::{OccupancyGrid, UNKNOWN};
 pub use keys::UnknownKey;
-pub use limits::{MAX_CELLS, MAX_ORIGIN_M, MAX_RESOLUTION_M, MAX_SIDE, MIN_RESOLUTION_M};
 pub use load::{image_of, load, load_within};
 pub use memory::{MemoryLimit, MemoryOptions};
+pub use messages::limits::{MAX_CELLS, MAX_ORIGIN_M, MAX_RESOLUTION_M, MAX_SIDE, MIN_RESOLUTION_M};
 pub use save::save;
 pub use set::{
     MAX_MAPS, MapFile, MapSet, Transition, list_of, set_of, set_of_files, set_of_noting,

@@ -1,43 +1,32 @@
 //! Comparison of each beam of a scan with the map.
 
-use bytemuck::{Pod, Zeroable};
-use serde::{Deserialize, Serialize};
-
-#[cfg(feature = "iceoryx2")]
-use crate::zero_copy::ZeroCopySend;
 use crate::{Pose2, Stamp};
 
-/// Header of topic `beams`; the items are the beams that voted, by bearing, followed by those
-/// without a return.
-#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable, Serialize, Deserialize)]
-#[cfg_attr(
-    feature = "iceoryx2",
-    derive(ZeroCopySend),
-    type_name("BeamsHeader/v1")
-)]
-#[repr(C)]
-pub struct BeamsHeader {
-    /// Stamp of the scan.
-    pub stamp: Stamp,
-    /// Map that the beams were compared with; 0 without a map.
-    pub map_id: u64,
-    /// Pose of the laser in the map for the comparison: the best hypothesis.
-    pub map_from_laser: Pose2,
-}
+crate::message! {
+    #[type_name("BeamsHeader/v1")]
+    /// Header of topic `beams`; the items are the beams that voted, by bearing, followed by those
+    /// without a return.
+    pub struct BeamsHeader {
+        /// Stamp of the scan.
+        pub stamp: Stamp,
+        /// Map that the beams were compared with; 0 without a map.
+        pub map_id: u64,
+        /// Pose of the laser in the map for the comparison: the best hypothesis.
+        pub map_from_laser: Pose2,
+    }
 
-/// One beam of a scan.
-#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable, Serialize, Deserialize)]
-#[cfg_attr(feature = "iceoryx2", derive(ZeroCopySend), type_name("Beam/v1"))]
-#[repr(C)]
-pub struct Beam {
-    /// Bearing in the laser's frame, in radians counter-clockwise from ahead.
-    pub bearing: f32,
-    /// Range in metres; infinity without a return.
-    pub range_m: f32,
-    /// Weight of the vote, 0..=1.05; 0 without a return.
-    pub weight: f32,
-    /// Result of the comparison, a [`BeamFate`].
-    pub fate: u32,
+    #[type_name("Beam/v1")]
+    /// One beam of a scan.
+    pub struct Beam {
+        /// Bearing in the laser's frame, in radians counter-clockwise from ahead.
+        pub bearing: f32,
+        /// Range in metres; infinity without a return.
+        pub range_m: f32,
+        /// Weight of the vote, 0..=1.05; 0 without a return.
+        pub weight: f32,
+        /// Result of the comparison, a [`BeamFate`].
+        pub fate: u32,
+    }
 }
 
 crate::codes! {

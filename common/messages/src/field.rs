@@ -1,40 +1,31 @@
 //! Intensity image of one scan.
 
-use bytemuck::{Pod, Zeroable};
-use serde::{Deserialize, Serialize};
-
 use crate::Stamp;
-#[cfg(feature = "iceoryx2")]
-use crate::zero_copy::ZeroCopySend;
 
-/// Header of topic `field`; the items are `width · height` intensities, row by row from the lowest
-/// y.
-#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable, Serialize, Deserialize)]
-#[cfg_attr(
-    feature = "iceoryx2",
-    derive(ZeroCopySend),
-    type_name("FieldHeader/v1")
-)]
-#[repr(C)]
-pub struct FieldHeader {
-    /// Stamp of the scan.
-    pub stamp: Stamp,
-    /// Map that was searched.
-    pub map_id: u64,
-    /// Width in pixels (along x).
-    pub width: u32,
-    /// Height in pixels (along y).
-    pub height: u32,
-    /// Side of a pixel in cells.
-    pub block: u32,
-    /// Meaning of the pixels, a [`FieldKind`].
-    pub kind: u32,
-    /// Highest intensity in the image.
-    pub best: u32,
-    /// Intensity of a pose that agrees with every beam.
-    pub highest_possible: u32,
-    /// Heading of an exact image in the map frame, in radians; else 0.
-    pub heading: f64,
+crate::message! {
+    #[type_name("FieldHeader/v1")]
+    /// Header of topic `field`; the items are `width · height` intensities, row by row from the
+    /// lowest y.
+    pub struct FieldHeader {
+        /// Stamp of the scan.
+        pub stamp: Stamp,
+        /// Map that was searched.
+        pub map_id: u64,
+        /// Width in pixels (along x).
+        pub width: u32,
+        /// Height in pixels (along y).
+        pub height: u32,
+        /// Side of a pixel in cells.
+        pub block: u32,
+        /// Meaning of the pixels, a [`FieldKind`].
+        pub kind: u32,
+        /// Highest intensity in the image.
+        pub best: u32,
+        /// Intensity of a pose that agrees with every beam.
+        pub highest_possible: u32,
+        /// Heading of an exact image in the map frame, in radians; else 0.
+        pub heading: f64,
+    }
 }
 
 crate::codes! {

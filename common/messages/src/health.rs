@@ -1,39 +1,31 @@
 //! Health of a node.
 
-use bytemuck::{Pod, Zeroable};
-use serde::{Deserialize, Serialize};
-
 use crate::Name;
-#[cfg(feature = "iceoryx2")]
-use crate::zero_copy::ZeroCopySend;
 
-/// Header of topic `health`; the items are the last error as UTF-8, at most
-/// [`HealthHeader::ERROR_CAPACITY`] bytes, empty without an error.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Pod, Zeroable, Serialize, Deserialize)]
-#[cfg_attr(
-    feature = "iceoryx2",
-    derive(ZeroCopySend),
-    type_name("HealthHeader/v1")
-)]
-#[repr(C)]
-pub struct HealthHeader {
-    /// Name of the node.
-    pub node: Name,
-    /// `CLOCK_MONOTONIC` in nanoseconds when it was sent.
-    pub sent_ns: i64,
-    /// Number of samples received from inputs.
-    pub received: u64,
-    /// Number of samples sent.
-    pub sent: u64,
-    /// Number of samples lost before they were received, because the node was too slow, or not
-    /// sent, because shared memory was full.
-    pub dropped: u64,
-    /// Number of received samples that were rejected as unusable.
-    pub refused: u64,
-    /// Process id of the node.
-    pub pid: u32,
-    /// State of the node, a [`NodeState`].
-    pub state: u32,
+crate::message! {
+    #[type_name("HealthHeader/v1")]
+    /// Header of topic `health`; the items are the last error as UTF-8, at most
+    /// [`HealthHeader::ERROR_CAPACITY`] bytes, empty without an error.
+    #[derive(Eq)]
+    pub struct HealthHeader {
+        /// Name of the node.
+        pub node: Name,
+        /// `CLOCK_MONOTONIC` in nanoseconds when it was sent.
+        pub sent_ns: i64,
+        /// Number of samples received from inputs.
+        pub received: u64,
+        /// Number of samples sent.
+        pub sent: u64,
+        /// Number of samples lost before they were received, because the node was too slow, or not
+        /// sent, because shared memory was full.
+        pub dropped: u64,
+        /// Number of received samples that were rejected as unusable.
+        pub refused: u64,
+        /// Process id of the node.
+        pub pid: u32,
+        /// State of the node, a [`NodeState`].
+        pub state: u32,
+    }
 }
 
 impl HealthHeader {

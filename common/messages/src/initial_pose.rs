@@ -1,30 +1,21 @@
 //! Initial pose from an operator or another program.
 
-use bytemuck::{Pod, Zeroable};
-use serde::{Deserialize, Serialize};
-
-#[cfg(feature = "iceoryx2")]
-use crate::zero_copy::ZeroCopySend;
 use crate::{Pose2, Stamp};
 
-/// The message of topic `initial_pose`.
-#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable, Serialize, Deserialize)]
-#[cfg_attr(
-    feature = "iceoryx2",
-    derive(ZeroCopySend),
-    type_name("InitialPose/v2")
-)]
-#[repr(C)]
-pub struct InitialPose {
-    /// Time of the message.
-    pub stamp: Stamp,
-    /// Kind of the message, an [`InitialPoseKind`].
-    pub kind: u64,
-    /// Pose of the robot's base in the map; the laser's if the mount is unknown. Ignored for
-    /// [`InitialPoseKind::Anywhere`].
-    pub map_from_base: Pose2,
-    /// Covariance of that pose, row by row over x, y and yaw: m², m·rad, rad².
-    pub covariance: [f64; 9],
+crate::message! {
+    #[type_name("InitialPose/v2")]
+    /// The message of topic `initial_pose`.
+    pub struct InitialPose {
+        /// Time of the message.
+        pub stamp: Stamp,
+        /// Kind of the message, an [`InitialPoseKind`].
+        pub kind: u64,
+        /// Pose of the robot's base in the map; the laser's if the mount is unknown. Ignored for
+        /// [`InitialPoseKind::Anywhere`].
+        pub map_from_base: Pose2,
+        /// Covariance of that pose, row by row over x, y and yaw: m², m·rad, rad².
+        pub covariance: [f64; 9],
+    }
 }
 
 crate::codes! {

@@ -8,6 +8,28 @@
 
 #![warn(missing_docs)]
 
+/// Declares plain data of messages, with the versioned names that the transport compares.
+macro_rules! message {
+    ($(
+        #[type_name($type_name:literal)]
+        $(#[$attribute:meta])*
+        pub struct $name:ident { $($fields:tt)* }
+    )+) => {
+        #[cfg(feature = "iceoryx2")]
+        use crate::zero_copy::ZeroCopySend;
+
+        $(
+            $(#[$attribute])*
+            #[derive(Debug, Clone, Copy, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
+            #[derive(serde::Serialize, serde::Deserialize)]
+            #[cfg_attr(feature = "iceoryx2", derive(ZeroCopySend), type_name($type_name))]
+            #[repr(C)]
+            pub struct $name { $($fields)* }
+        )+
+    };
+}
+pub(crate) use message;
+
 /// Declares an enum that messages hold as its code, and optionally the names of its values.
 macro_rules! codes {
     (
@@ -46,6 +68,12 @@ macro_rules! codes {
                 }
             }
         }
+
+        impl std::fmt::Display for $name {
+            fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+                f.pad(self.as_str())
+            }
+        }
     };
     (@names $($without:tt)+) => {};
 }
@@ -61,6 +89,7 @@ mod hypotheses;
 mod initial_pose;
 #[cfg(test)]
 mod layouts;
+pub mod limits;
 mod log;
 mod map;
 mod maps;

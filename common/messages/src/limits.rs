@@ -1,4 +1,4 @@
-//! Limits on the size and origin of a grid.
+//! Limits on the size and origin of a map.
 
 use std::f64::consts::TAU;
 
@@ -23,24 +23,23 @@ pub const MAX_RESOLUTION_M: f64 = 10.0;
 /// Earth, and an `f64` still has a resolution of 15 nanometres there.
 pub const MAX_ORIGIN_M: f64 = 1e8;
 
-pub(crate) fn size_is_allowed(width: u32, height: u32) -> bool {
+/// True if a map may have this many cells along x and y.
+#[must_use]
+pub fn size_is_allowed(width: u32, height: u32) -> bool {
     let sides = 1..=MAX_SIDE;
     sides.contains(&width)
         && sides.contains(&height)
         && u64::from(width) * u64::from(height) <= MAX_CELLS
 }
 
-/// True if a cell may have this side; false for NaN.
-pub(crate) fn resolution_is_allowed(metres: f64) -> bool {
+/// True if a cell may have this side, in metres; false for NaN.
+#[must_use]
+pub fn resolution_is_allowed(metres: f64) -> bool {
     (MIN_RESOLUTION_M..=MAX_RESOLUTION_M).contains(&metres)
 }
 
-/// True if a grid may have this origin; false for NaN and infinities.
-pub(crate) fn origin_is_allowed(origin: Pose) -> bool {
+/// True if a grid may have this pose in the map frame; false for NaN and infinities.
+#[must_use]
+pub fn origin_is_allowed(origin: Pose) -> bool {
     origin.x.abs() <= MAX_ORIGIN_M && origin.y.abs() <= MAX_ORIGIN_M && origin.yaw.abs() <= TAU
-}
-
-/// Says which sides [`size_is_allowed`] accepts.
-pub(crate) fn sizes_allowed() -> String {
-    format!("allowed: sides of 1..={MAX_SIDE} and at most {MAX_CELLS} cells")
 }

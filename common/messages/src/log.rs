@@ -1,33 +1,29 @@
 //! A line of a node's log.
 
-use bytemuck::{Pod, Zeroable};
-use serde::{Deserialize, Serialize};
-
 use crate::Name;
-#[cfg(feature = "iceoryx2")]
-use crate::zero_copy::ZeroCopySend;
 
-/// Header of topic `log`; the items are the line as UTF-8 without a newline, at most
-/// [`LogHeader::TEXT_CAPACITY`] bytes.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Pod, Zeroable, Serialize, Deserialize)]
-#[cfg_attr(feature = "iceoryx2", derive(ZeroCopySend), type_name("LogHeader/v1"))]
-#[repr(C)]
-pub struct LogHeader {
-    /// Name of the node.
-    pub node: Name,
-    /// `CLOCK_MONOTONIC` in nanoseconds when it was written.
-    pub written_ns: i64,
-    /// Wall clock in nanoseconds since 1970 when it was written.
-    pub wall_ns: i64,
-    /// Number of the line in its process, from 0; gaps show losses.
-    pub counter: u64,
-    /// Number of lines of the process that were lost before they could be sent, because they were
-    /// logged faster than sent.
-    pub dropped: u64,
-    /// Level of the line, a [`LogLevel`].
-    pub level: u32,
-    /// Process id of the node.
-    pub pid: u32,
+crate::message! {
+    #[type_name("LogHeader/v1")]
+    /// Header of topic `log`; the items are the line as UTF-8 without a newline, at most
+    /// [`LogHeader::TEXT_CAPACITY`] bytes.
+    #[derive(Eq)]
+    pub struct LogHeader {
+        /// Name of the node.
+        pub node: Name,
+        /// `CLOCK_MONOTONIC` in nanoseconds when it was written.
+        pub written_ns: i64,
+        /// Wall clock in nanoseconds since 1970 when it was written.
+        pub wall_ns: i64,
+        /// Number of the line in its process, from 0; gaps show losses.
+        pub counter: u64,
+        /// Number of lines of the process that were lost before they could be sent, because they
+        /// were logged faster than sent.
+        pub dropped: u64,
+        /// Level of the line, a [`LogLevel`].
+        pub level: u32,
+        /// Process id of the node.
+        pub pid: u32,
+    }
 }
 
 impl LogHeader {

@@ -2,13 +2,9 @@
 
 use std::hash::Hasher;
 
-use bytemuck::{Pod, Zeroable};
-use serde::{Deserialize, Serialize};
-
+use bytemuck::Zeroable;
 use twox_hash::XxHash3_64;
 
-#[cfg(feature = "iceoryx2")]
-use crate::zero_copy::ZeroCopySend;
 use crate::{MapName, Pose2, Stamp};
 
 /// Occupancy of an unknown cell.
@@ -20,37 +16,38 @@ pub const OCCUPIED_FROM: u8 = 65;
 /// Default occupancy up to which a cell is free, in per cent.
 pub const FREE_TO: u8 = 25;
 
-/// Header of topic `map`; the items are `width · height` cells, row by row from the lowest y: 0
-/// free to 100 occupied, [`UNKNOWN`] unknown.
-///
-/// It includes the rules for classifying cells, so that all users of the map classify them in the
-/// same way.
-#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable, Serialize, Deserialize)]
-#[cfg_attr(feature = "iceoryx2", derive(ZeroCopySend), type_name("MapHeader/v2"))]
-#[repr(C)]
-pub struct MapHeader {
-    /// Time at which the map was read; the counter counts the maps served.
-    pub stamp: Stamp,
-    /// Hash of the cells, their geometry and the name: equal maps have equal ids, unless their
-    /// names in a set differ.
-    pub map_id: u64,
-    /// Width in cells (along x).
-    pub width: u32,
-    /// Height in cells (along y).
-    pub height: u32,
-    /// Side of a cell in metres.
-    pub resolution_m: f64,
-    /// Pose of the grid in the map frame: the lower left corner of cell (0, 0), and the rotation of
-    /// the grid's axes.
-    pub map_from_grid: Pose2,
-    /// Occupancy from which a cell is occupied, in per cent, 1..=100.
-    pub occupied_from: u32,
-    /// Occupancy up to which a cell is free, in per cent, 0..=99; values in between are unknown.
-    pub free_to: u32,
-    /// 1 if unknown cells block rays, else 0.
-    pub unknown_blocks: u64,
-    /// Name of the map in its set; empty without a set.
-    pub name: MapName,
+crate::message! {
+    #[type_name("MapHeader/v2")]
+    /// Header of topic `map`; the items are `width · height` cells, row by row from the lowest y: 0
+    /// free to 100 occupied, [`UNKNOWN`] unknown.
+    ///
+    /// It includes the rules for classifying cells, so that all users of the map classify them in
+    /// the same way.
+    pub struct MapHeader {
+        /// Time at which the map was read; the counter counts the maps served.
+        pub stamp: Stamp,
+        /// Hash of the cells, their geometry and the name: equal maps have equal ids, unless their
+        /// names in a set differ.
+        pub map_id: u64,
+        /// Width in cells (along x).
+        pub width: u32,
+        /// Height in cells (along y).
+        pub height: u32,
+        /// Side of a cell in metres.
+        pub resolution_m: f64,
+        /// Pose of the grid in the map frame: the lower left corner of cell (0, 0), and the
+        /// rotation of the grid's axes.
+        pub map_from_grid: Pose2,
+        /// Occupancy from which a cell is occupied, in per cent, 1..=100.
+        pub occupied_from: u32,
+        /// Occupancy up to which a cell is free, in per cent, 0..=99; values in between are
+        /// unknown.
+        pub free_to: u32,
+        /// 1 if unknown cells block rays, else 0.
+        pub unknown_blocks: u64,
+        /// Name of the map in its set; empty without a set.
+        pub name: MapName,
+    }
 }
 
 impl Default for MapHeader {
@@ -89,25 +86,14 @@ pub fn map_id(
 }
 
 /// Error of a map whose id does not match its content; it could be confused with another map.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+#[error("its id {found:016x} is not that of its cells, {expected:016x}")]
 pub struct WrongMapId {
     /// Id in the header.
     pub found: u64,
     /// Id of the content.
     pub expected: u64,
 }
-
-impl std::fmt::Display for WrongMapId {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        let WrongMapId { found, expected } = self;
-        write!(
-            f,
-            "its id {found:016x} is not that of its cells, {expected:016x}"
-        )
-    }
-}
-
-impl std::error::Error for WrongMapId {}
 
 impl MapHeader {
     /// Returns the id of a map with this geometry, name and cells.

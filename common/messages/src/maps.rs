@@ -6,24 +6,23 @@ use bytemuck::{Pod, Zeroable};
 use serde::{Deserialize, Serialize};
 use twox_hash::XxHash3_64;
 
-#[cfg(feature = "iceoryx2")]
-use crate::zero_copy::ZeroCopySend;
 use crate::{MapHeader, Pose2, Stamp, WrongMapId};
 
-/// Header of topic `maps`. The items are bytes: the [`MapHeader`] of each map, the [`Transition`]s
-/// between them, and the cells of each map; [`MapSet`] reads and writes them.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Pod, Zeroable, Serialize, Deserialize)]
-#[cfg_attr(feature = "iceoryx2", derive(ZeroCopySend), type_name("MapsHeader/v1"))]
-#[repr(C)]
-pub struct MapsHeader {
-    /// Time at which the maps were read; the counter counts the sets served.
-    pub stamp: Stamp,
-    /// Hash of all maps and transitions.
-    pub set_id: u64,
-    /// Number of maps.
-    pub maps: u32,
-    /// Number of transitions.
-    pub transitions: u32,
+crate::message! {
+    #[type_name("MapsHeader/v1")]
+    /// Header of topic `maps`. The items are bytes: the [`MapHeader`] of each map, the
+    /// [`Transition`]s between them, and the cells of each map; [`MapSet`] reads and writes them.
+    #[derive(Eq)]
+    pub struct MapsHeader {
+        /// Time at which the maps were read; the counter counts the sets served.
+        pub stamp: Stamp,
+        /// Hash of all maps and transitions.
+        pub set_id: u64,
+        /// Number of maps.
+        pub maps: u32,
+        /// Number of transitions.
+        pub transitions: u32,
+    }
 }
 
 /// A connection between two maps: a lift, stairs, a door between buildings. It is a rectangle that
@@ -50,18 +49,22 @@ pub struct MapSet<'a> {
 }
 
 /// Error of an invalid message of topic `maps`.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 pub enum InvalidMapSet {
     /// There are no maps.
+    #[error("the set has no maps")]
     Empty,
     /// The size differs from that of its maps and transitions.
+    #[error("{found} bytes are not those of its maps and transitions")]
     Size {
         /// Bytes received.
         found: usize,
     },
     /// The id of a map does not match its content.
+    #[error("a map of the set: {0}")]
     MapId(WrongMapId),
     /// A transition has invalid maps or an invalid rectangle.
+    #[error("transition {number} is not a rectangle on two different maps of the set")]
     Transition {
         /// Index of the transition.
         number: usize,
@@ -199,24 +202,6 @@ impl Transition {
             && poses.chain(self.size_m).all(f64::is_finite)
     }
 }
-
-impl std::fmt::Display for InvalidMapSet {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        match self {
-            InvalidMapSet::Empty => f.write_str("the set has no maps"),
-            InvalidMapSet::Size { found } => {
-                write!(f, "{found} bytes are not those of its maps and transitions")
-            }
-            InvalidMapSet::MapId(error) => write!(f, "a map of the set: {error}"),
-            InvalidMapSet::Transition { number } => write!(
-                f,
-                "transition {number} is not a rectangle on two different maps of the set"
-            ),
-        }
-    }
-}
-
-impl std::error::Error for InvalidMapSet {}
 
 #[cfg(test)]
 mod tests {

@@ -1,23 +1,26 @@
 //! A pose in a message.
 
-use bytemuck::{Pod, Zeroable};
 use geometry::Pose;
-use serde::{Deserialize, Serialize};
 
-#[cfg(feature = "iceoryx2")]
-use crate::zero_copy::ZeroCopySend;
+crate::message! {
+    #[type_name("Pose2/v1")]
+    /// A pose in metres and radians; the name of its field gives the frames.
+    pub struct Pose2 {
+        /// Position along x in metres.
+        pub x: f64,
+        /// Position along y in metres.
+        pub y: f64,
+        /// Heading in radians, counter-clockwise.
+        pub yaw: f64,
+    }
+}
 
-/// A pose in metres and radians; the name of its field gives the frames.
-#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable, Serialize, Deserialize)]
-#[cfg_attr(feature = "iceoryx2", derive(ZeroCopySend), type_name("Pose2/v1"))]
-#[repr(C)]
-pub struct Pose2 {
-    /// Position along x in metres.
-    pub x: f64,
-    /// Position along y in metres.
-    pub y: f64,
-    /// Heading in radians, counter-clockwise.
-    pub yaw: f64,
+impl Pose2 {
+    /// Makes a pose from metres and radians.
+    #[must_use]
+    pub const fn new(x: f64, y: f64, yaw: f64) -> Self {
+        Pose2 { x, y, yaw }
+    }
 }
 
 impl From<Pose> for Pose2 {

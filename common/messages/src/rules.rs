@@ -20,7 +20,8 @@ pub struct CellRules {
 }
 
 /// Error of a map with a rule out of range.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+#[error("{field} of the map is {found}: allowed are {allowed}")]
 pub struct InvalidRule {
     /// Name of the rule.
     pub field: &'static str,
@@ -29,19 +30,6 @@ pub struct InvalidRule {
     /// Description of the allowed values.
     pub allowed: &'static str,
 }
-
-impl std::fmt::Display for InvalidRule {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        let InvalidRule {
-            field,
-            found,
-            allowed,
-        } = self;
-        write!(f, "{field} of the map is {found}: allowed are {allowed}")
-    }
-}
-
-impl std::error::Error for InvalidRule {}
 
 impl Default for CellRules {
     fn default() -> Self {

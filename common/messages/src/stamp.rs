@@ -1,27 +1,31 @@
 //! Times of a measurement.
 
-use bytemuck::{Pod, Zeroable};
-use serde::{Deserialize, Serialize};
-
-#[cfg(feature = "iceoryx2")]
-use crate::zero_copy::ZeroCopySend;
-
-/// Times and number of a measurement. Every step copies the stamp of its input, so latency is
-/// always now minus `entered_ns`.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Pod, Zeroable, Serialize, Deserialize)]
-#[cfg_attr(feature = "iceoryx2", derive(ZeroCopySend), type_name("Stamp/v1"))]
-#[repr(C)]
-pub struct Stamp {
-    /// Time of the measurement by the source's clock, in nanoseconds since 1970; a recording keeps
-    /// the original time.
-    pub measured_ns: i64,
-    /// `CLOCK_MONOTONIC` of the host in nanoseconds when it entered the graph.
-    pub entered_ns: i64,
-    /// Number of the measurement at its publisher, from 0; gaps show losses.
-    pub counter: u64,
+crate::message! {
+    #[type_name("Stamp/v1")]
+    /// Times and number of a measurement. Every step copies the stamp of its input, so latency is
+    /// always now minus `entered_ns`.
+    #[derive(Eq, Default)]
+    pub struct Stamp {
+        /// Time of the measurement by the source's clock, in nanoseconds since 1970; a recording
+        /// keeps the original time.
+        pub measured_ns: i64,
+        /// `CLOCK_MONOTONIC` of the host in nanoseconds when it entered the graph.
+        pub entered_ns: i64,
+        /// Number of the measurement at its publisher, from 0; gaps show losses.
+        pub counter: u64,
+    }
 }
 
 impl Stamp {
+    /// Makes a stamp with this time of measurement, in nanoseconds; its other numbers are 0.
+    #[must_use]
+    pub fn measured_at(measured_ns: i64) -> Self {
+        Stamp {
+            measured_ns,
+            ..Stamp::default()
+        }
+    }
+
     /// True if both are of the same measurement. `entered_ns` is ignored, as it differs by machine.
     #[must_use]
     pub fn is_of(self, other: Stamp) -> bool {

@@ -1,61 +1,56 @@
 //! Pose from the tracker, and its certainty.
 
-use bytemuck::{Pod, Zeroable};
-use serde::{Deserialize, Serialize};
-
-#[cfg(feature = "iceoryx2")]
-use crate::zero_copy::ZeroCopySend;
 use crate::{FrameName, Pose2, Stamp};
 
-/// The message of topic `pose`; the items are the reason in words and what to do, as UTF-8.
-#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable, Serialize, Deserialize)]
-#[cfg_attr(feature = "iceoryx2", derive(ZeroCopySend), type_name("PoseHeader/v1"))]
-#[repr(C)]
-pub struct PoseHeader {
-    /// Stamp of the scan or, between scans, of the odometry.
-    pub stamp: Stamp,
-    /// Map of the pose; 0 without a map.
-    pub map_id: u64,
-    /// `CLOCK_MONOTONIC` in nanoseconds when the pose was sent.
-    pub sent_ns: i64,
-    /// Computing time in nanoseconds, without the search.
-    pub tracking_ns: u64,
-    /// Start of the current state by the stamps of scans: nanoseconds since 1970.
-    pub since_ns: i64,
-    /// Distance that the robot has moved since then, in metres.
-    pub since_m: f64,
-    /// Pose of the laser in the map; of the first one if there are several.
-    pub map_from_laser: Pose2,
-    /// Pose of the robot's base in the map; the laser's if the mount is unknown.
-    pub map_from_base: Pose2,
-    /// Pose of the odometry's frame in the map; valid if `odom_known` is 1.
-    pub map_from_odom: Pose2,
-    /// Covariance of `map_from_laser`, row by row over x, y and yaw: m², m·rad, rad².
-    pub laser_covariance: [f64; 9],
-    /// Covariance of `map_from_base`, row by row over x, y and yaw: m², m·rad, rad².
-    pub base_covariance: [f64; 9],
-    /// Probability of the pose, 0..=1.
-    pub probability: f64,
-    /// Natural logarithm of the odds of that probability.
-    pub lead: f64,
-    /// Fit of the last scan to the map at the pose, at most 1.
-    pub score: f64,
-    /// State of the tracker, a [`TrackState`].
-    pub state: u32,
-    /// Reason for the state, a [`TrackReason`].
-    pub reason: u32,
-    /// Number of places that are kept as possible, including the best.
-    pub places: u32,
-    /// 1 if the pose is that of a scan, 0 if odometry has moved it on since.
-    pub from_scan: u32,
-    /// 1 if there is a pose: that of the believed place, else of the leading one.
-    pub pose_known: u32,
-    /// 1 if the laser's mount is known and `map_from_base` is valid, else 0.
-    pub mount_known: u32,
-    /// 1 if odometry is known and `map_from_odom` is valid, else 0.
-    pub odom_known: u64,
-    /// Frame of the odometry, if it is known.
-    pub odom_frame: FrameName,
+crate::message! {
+    #[type_name("PoseHeader/v1")]
+    /// The message of topic `pose`; the items are the reason in words and what to do, as UTF-8.
+    pub struct PoseHeader {
+        /// Stamp of the scan or, between scans, of the odometry.
+        pub stamp: Stamp,
+        /// Map of the pose; 0 without a map.
+        pub map_id: u64,
+        /// `CLOCK_MONOTONIC` in nanoseconds when the pose was sent.
+        pub sent_ns: i64,
+        /// Computing time in nanoseconds, without the search.
+        pub tracking_ns: u64,
+        /// Start of the current state by the stamps of scans: nanoseconds since 1970.
+        pub since_ns: i64,
+        /// Distance that the robot has moved since then, in metres.
+        pub since_m: f64,
+        /// Pose of the laser in the map; of the first one if there are several.
+        pub map_from_laser: Pose2,
+        /// Pose of the robot's base in the map; the laser's if the mount is unknown.
+        pub map_from_base: Pose2,
+        /// Pose of the odometry's frame in the map; valid if `odom_known` is 1.
+        pub map_from_odom: Pose2,
+        /// Covariance of `map_from_laser`, row by row over x, y and yaw: m², m·rad, rad².
+        pub laser_covariance: [f64; 9],
+        /// Covariance of `map_from_base`, row by row over x, y and yaw: m², m·rad, rad².
+        pub base_covariance: [f64; 9],
+        /// Probability of the pose, 0..=1.
+        pub probability: f64,
+        /// Natural logarithm of the odds of that probability.
+        pub lead: f64,
+        /// Fit of the last scan to the map at the pose, at most 1.
+        pub score: f64,
+        /// State of the tracker, a [`TrackState`].
+        pub state: u32,
+        /// Reason for the state, a [`TrackReason`].
+        pub reason: u32,
+        /// Number of places that are kept as possible, including the best.
+        pub places: u32,
+        /// 1 if the pose is that of a scan, 0 if odometry has moved it on since.
+        pub from_scan: u32,
+        /// 1 if there is a pose: that of the believed place, else of the leading one.
+        pub pose_known: u32,
+        /// 1 if the laser's mount is known and `map_from_base` is valid, else 0.
+        pub mount_known: u32,
+        /// 1 if odometry is known and `map_from_odom` is valid, else 0.
+        pub odom_known: u64,
+        /// Frame of the odometry, if it is known.
+        pub odom_frame: FrameName,
+    }
 }
 
 impl PoseHeader {
@@ -109,12 +104,6 @@ impl TrackState {
     #[must_use]
     pub fn is_believed(self) -> bool {
         matches!(self, Self::Unique | Self::Doubtful)
-    }
-}
-
-impl std::fmt::Display for TrackState {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.pad(self.as_str())
     }
 }
 

@@ -22,12 +22,7 @@ pub fn extract(map: &MapHeader, occupancy: &[u8]) -> Result<Extraction, Boundary
     let rules = CellRules::of(map).map_err(EngineError::from)?;
     let (width, height) = (map.width as usize, map.height as usize);
     let grid = Grid::new(width, height, occupancy, rules)?;
-    if grid.occupied_cells() == 0 {
-        return Err(EngineError::NoOccupiedCell.into());
-    }
-    if grid.free_cells() == 0 {
-        return Err(EngineError::NoFreeCell.into());
-    }
+    grid.check_use()?;
     let cells = boundary::extract(&grid);
     if cells.is_empty() {
         let occupied = grid.occupied_cells();

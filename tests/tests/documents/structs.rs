@@ -3,28 +3,35 @@
 use std::collections::BTreeSet;
 
 use syn::parse::ParseBuffer;
-use syn::punctuated::Punctuated;
-use syn::{Attribute, Fields, Item, ItemStruct, LitStr, Meta, Token};
+use syn::{Attribute, Fields, Item, ItemMacro, ItemStruct, LitStr};
 use tests::{markdown, root};
 
 use crate::read;
 
+/// Returns the structs of a file, and of the blocks `message! { … }` in it.
 fn structs(file: &str) -> Vec<ItemStruct> {
     let source = syn::parse_file(&read(&root().join(file))).unwrap();
-    let structs = source.items.into_iter().filter_map(|item| match item {
+    let items = source.items.into_iter().flat_map(|item| match item {
+        Item::Macro(block) if is_message(&block) => {
+            block.mac.parse_body::<syn::File>().unwrap().items
+        }
+        item => vec![item],
+    });
+    let structs = items.filter_map(|item| match item {
         Item::Struct(item) => Some(item),
         _ => None,
     });
     structs.collect()
 }
 
-/// Returns the versioned name of a message, from `type_name("Scan/v1")` at its derive attribute.
+fn is_message(block: &ItemMacro) -> bool {
+    let name = block.mac.path.segments.last();
+    name.is_some_and(|name| name.ident == "message")
+}
+
+/// Returns the versioned name of a message, from its attribute `type_name("Scan/v1")`.
 fn type_name(item: &ItemStruct) -> Option<String> {
-    let attribute = item.attrs.iter().find(|a| a.path().is_ident("cfg_attr"))?;
-    let parts = attribute.parse_args_with(Punctuated::<Meta, Token![,]>::parse_terminated);
-    let parts = parts.ok()?.into_iter();
-    let mut lists = parts.filter_map(|part| part.require_list().ok().cloned());
-    let named = lists.find(|list| list.path.is_ident("type_name"))?;
+    let named = item.attrs.iter().find(|a| a.path().is_ident("type_name"))?;
     Some(named.parse_args::<LitStr>().ok()?.value())
 }
 

@@ -49,6 +49,12 @@ pub struct GridPose {
 }
 
 impl GridPose {
+    /// Makes a pose from cells and radians.
+    #[must_use]
+    pub const fn new(x: f64, y: f64, heading: f64) -> Self {
+        GridPose { x, y, heading }
+    }
+
     /// Converts a pose in the map; the inverse of [`GridFrame::map_from_cells`].
     #[must_use]
     pub fn of(frame: GridFrame, map_pose: Pose) -> Self {

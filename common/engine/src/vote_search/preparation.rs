@@ -77,12 +77,7 @@ impl Preparation {
         config: VoteSearchConfig,
         prior: Prior,
     ) -> Result<Self, EngineError> {
-        if grid.occupied_cells() == 0 {
-            return Err(EngineError::NoOccupiedCell);
-        }
-        if grid.free_cells() == 0 {
-            return Err(EngineError::NoFreeCell);
-        }
+        grid.check_use()?;
         let space = Space::new(
             config.headings,
             frame.resolution_m,

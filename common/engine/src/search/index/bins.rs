@@ -119,7 +119,7 @@ impl Line {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::grid::MAX_SIDE;
+    use messages::limits::MAX_SIDE;
 
     #[test]
     fn bins_rise_with_the_steps_and_stay_below_nothing() {
@@ -133,10 +133,7 @@ mod tests {
                     let bin = bins.bin(class, steps);
                     assert!(before <= bin && bin < Bins::NOTHING, "{class}: {steps}");
                     let is_least = least(steps) == Some(u16::from(bin));
-                    assert!(
-                        is_least || usize::from(steps) >= MAX_SIDE,
-                        "{class}: {steps}"
-                    );
+                    assert!(is_least || u32::from(steps) >= MAX_SIDE, "{class}: {steps}");
                     before = bin;
                 }
                 assert!(least(u16::MAX) >= Some(u16::from(Bins::NOTHING)));
