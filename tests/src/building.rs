@@ -113,10 +113,7 @@ impl Building {
             }
         }
         BuildingMap {
-            frame: GridFrame {
-                resolution_m,
-                map_from_grid: Pose::IDENTITY,
-            },
+            frame: GridFrame::new(resolution_m, Pose::IDENTITY),
             sides: (width, height),
             occupancy,
         }

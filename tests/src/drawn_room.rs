@@ -23,17 +23,10 @@ pub const ROOM: [&str; 9] = [
 ];
 
 /// Rotated, so that a confusion of grid and map frames would show.
-pub const FRAME: GridFrame = GridFrame {
-    resolution_m: 0.25,
-    map_from_grid: Pose::new(3.0, -1.0, 0.5),
-};
+pub const FRAME: GridFrame = GridFrame::new(0.25, Pose::new(3.0, -1.0, 0.5));
 
 /// Pose of the laser on the robot.
-pub const MOUNT: Pose2 = Pose2 {
-    x: 0.78,
-    y: 0.0,
-    yaw: 0.125,
-};
+pub const MOUNT: Pose2 = Pose2::new(0.78, 0.0, 0.125);
 
 /// Returns the occupancy of a drawing in per cent, row by row from the lowest y.
 pub fn occupancy(rows: &[&str]) -> Vec<u8> {

@@ -34,10 +34,7 @@ impl World {
     /// Returns the engine with its default settings, on this map.
     pub fn vote_search(&self, prior: Prior) -> VoteSearch {
         let map = map::load(self.map()).unwrap();
-        let frame = GridFrame {
-            resolution_m: map.resolution_m,
-            map_from_grid: map.map_from_grid,
-        };
+        let frame = GridFrame::new(map.resolution_m, map.map_from_grid);
         let (width, height) = (map.width as usize, map.height as usize);
         let grid = Grid::new(width, height, &map.cells, CellRules::default()).unwrap();
         VoteSearch::new(frame, grid, VoteSearchConfig::default(), prior).unwrap()

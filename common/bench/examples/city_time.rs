@@ -40,10 +40,7 @@ struct Options {
     cache: IndexCacheConfig,
 }
 
-const FRAME: GridFrame = GridFrame {
-    resolution_m: bench::RESOLUTION_M,
-    map_from_grid: Pose::IDENTITY,
-};
+const FRAME: GridFrame = GridFrame::new(bench::RESOLUTION_M, Pose::IDENTITY);
 
 fn main() -> Result<(), Box<dyn Error>> {
     let options = Options::parse();

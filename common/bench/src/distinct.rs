@@ -44,10 +44,7 @@ mod tests {
             ..Outcome::default()
         };
         outcome.found.votes = vec![vote(3, 0), vote(4, 355), vote(3, 90), vote(30, 0)];
-        let frame = GridFrame {
-            resolution_m: 0.1,
-            map_from_grid: Pose::IDENTITY,
-        };
+        let frame = GridFrame::new(0.1, Pose::IDENTITY);
         let poses = |most| distinct(&outcome, frame, most);
         let [best, turned, far] = poses(9)[..] else {
             panic!("three places: {:?}", poses(9));

@@ -174,10 +174,8 @@ mod tests {
     use super::*;
     use crate::grid::drawn::grid;
 
-    const FRAME: GridFrame = GridFrame {
-        resolution_m: 0.5,
-        map_from_grid: Pose::new(10.0, 20.0, std::f64::consts::FRAC_PI_2),
-    };
+    const FRAME: GridFrame =
+        GridFrame::new(0.5, Pose::new(10.0, 20.0, std::f64::consts::FRAC_PI_2));
 
     const ROOM: [&str; 4] = ["######", "#....#", "#....#", "######"];
 

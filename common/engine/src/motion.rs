@@ -158,14 +158,8 @@ impl Motion {
             return None;
         }
         let start = after.checked_sub(2).and_then(|i| self.samples.get(i));
-        let Some(&(start_ns, start)) = start else {
-            return Some(end);
-        };
-        if end_ns - start_ns > MAX_GAP_NS || beyond_ns > MAX_BEYOND_NS {
-            return Some(end);
-        }
-        let share = (stamp_ns - start_ns) as f64 / (end_ns - start_ns) as f64;
-        Some(start.towards(end, share))
+        let moved_on = start.and_then(|&start| on_arc(start, (end_ns, end), stamp_ns));
+        Some(moved_on.unwrap_or(end))
     }
 
     /// Median of the last periods between the first `count` samples, in nanoseconds; 0 without any.
@@ -198,18 +192,27 @@ impl Motion {
         }
         let is_between = 0 < after && after < self.samples.len();
         let second = after.clamp(1, self.samples.len().checked_sub(1).filter(|&n| n > 0)?);
-        let (&(start_ns, start), &(end_ns, end)) =
-            (self.samples.get(second - 1)?, self.samples.get(second)?);
-        let beyond_ns = (start_ns.saturating_sub(stamp_ns)).max(stamp_ns.saturating_sub(end_ns));
-        if end_ns - start_ns > MAX_GAP_NS || beyond_ns > MAX_BEYOND_NS {
-            return None;
-        }
-        let share = (stamp_ns - start_ns) as f64 / (end_ns - start_ns) as f64;
+        let (start, end) = (self.samples.get(second - 1)?, self.samples.get(second)?);
         Some(Located {
-            odom_from_child: start.towards(end, share),
+            odom_from_child: on_arc(*start, *end, stamp_ns)?,
             is_between,
         })
     }
+}
+
+/// Returns the pose at a time on the arc of constant twist through two samples; `None` if they are
+/// too far apart, or the time is too far beyond them.
+fn on_arc(
+    (start_ns, start): (i64, Pose),
+    (end_ns, end): (i64, Pose),
+    stamp_ns: i64,
+) -> Option<Pose> {
+    let beyond_ns = (start_ns.saturating_sub(stamp_ns)).max(stamp_ns.saturating_sub(end_ns));
+    if end_ns - start_ns > MAX_GAP_NS || beyond_ns > MAX_BEYOND_NS {
+        return None;
+    }
+    let share = (stamp_ns - start_ns) as f64 / (end_ns - start_ns) as f64;
+    Some(start.towards(end, share))
 }
 
 #[cfg(test)]
@@ -312,26 +315,16 @@ mod tests {
         // The robot drives through the origin, and stands there.
         let mut through = Motion::keeping(8);
         for tenth in 0..8 {
-            through.add(
-                tenth * TENTH,
-                Pose::new(0.15 * (tenth as f64 - 4.0), 0.0, 0.0),
-            );
-            through.add(
-                tenth * TENTH + 1,
-                Pose::new(0.15 * (tenth as f64 - 4.0), 0.0, 0.0),
-            );
+            let pose = Pose::new(0.15 * (tenth as f64 - 4.0), 0.0, 0.0);
+            through.add(tenth * TENTH, pose);
+            through.add(tenth * TENTH + 1, pose);
         }
         assert_eq!(through.starts(), 0);
         // The robot turns on the spot where it started, at 90 degrees per second and ten samples
         // per second.
-        let mut turning = Motion::keeping(8);
-        for tenth in 0..8 {
-            turning.add(
-                tenth * TENTH,
-                Pose::new(0.0, 0.0, 0.157 * (tenth as f64 - 4.0)),
-            );
-        }
-        assert_eq!(turning.starts(), 0);
+        let turned = |tenth| (tenth, Pose::new(0.0, 0.0, 0.157 * (tenth as f64 - 4.0)));
+        let turning: Vec<_> = (0..8).map(turned).collect();
+        assert_eq!(motion(&turning).starts(), 0);
         // Scans before the restart are not covered, and nothing is interpolated across it.
         let mut anew = motion(&[(10, far), (12, far)]);
         anew.add(13 * TENTH, Pose::IDENTITY);

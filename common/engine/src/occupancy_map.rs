@@ -28,10 +28,7 @@ impl<'a> Map<'a> {
         occupancy: &'a [u8],
     ) -> Self {
         Map {
-            frame: GridFrame {
-                resolution_m,
-                map_from_grid,
-            },
+            frame: GridFrame::new(resolution_m, map_from_grid),
             sides,
             occupancy,
             rules: CellRules::default(),

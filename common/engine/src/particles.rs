@@ -164,10 +164,7 @@ fn root(covariance: Matrix3<f64>) -> Option<Matrix3<f64>> {
 mod tests {
     use super::*;
 
-    const FRAME: GridFrame = GridFrame {
-        resolution_m: 0.1,
-        map_from_grid: Pose::new(3.0, -1.0, 0.5),
-    };
+    const FRAME: GridFrame = GridFrame::new(0.1, Pose::new(3.0, -1.0, 0.5));
 
     fn candidate(x: f64, weight: f64) -> Candidate {
         Candidate {

@@ -3,7 +3,7 @@
 use std::f64::consts::PI;
 use std::ops::Range;
 
-use geometry::Pose;
+use geometry::{Covariance, Pose};
 use messages::{UNKNOWN, Vote};
 use proptest::collection::vec;
 use proptest::option::of;
@@ -11,6 +11,7 @@ use proptest::prelude::*;
 
 use crate::grid::{Cell, CellRules, Grid, GridFrame};
 use crate::limits::{HeadingInterval, Limits, LimitsConfig, Region};
+use crate::peaks::Place;
 use crate::program::{ScanProgram, VoteConfig};
 use crate::reference;
 use crate::scan::Scan;
@@ -67,6 +68,30 @@ pub(crate) fn scan_from(angle_min: f64, angle_increment: f64, ranges: &[f32]) ->
         range_min_m: 0.0,
         range_max_m: 100.0,
         ranges,
+    }
+}
+
+pub(crate) fn vote(x: u16, y: u16, heading: u16, intensity: u16) -> Vote {
+    Vote {
+        x,
+        y,
+        heading,
+        intensity,
+    }
+}
+
+/// Place with a score and votes, of 100 possible ones, on the map with this number.
+pub(crate) fn place(map: u32, score: f64, intensity: u16) -> Place {
+    Place {
+        map,
+        map_from_laser: Pose::new(score, f64::from(intensity), 0.0),
+        covariance: Covariance::from_deviations(0.1, 0.1, 0.01),
+        score,
+        probability: 0.0,
+        intensity,
+        possible: 100,
+        drawn_doubt: 0.0,
+        support: 1,
     }
 }
 
@@ -143,10 +168,7 @@ pub(crate) fn space_of(grid: &Grid, headings: u32) -> Space {
 /// Limits of a test grid: distance from free cells, region, radius, headings, or any combination.
 pub(crate) fn any_limits(grid: &Grid, headings: u32) -> impl Strategy<Value = Limits> + use<> {
     let (grid, space) = (grid.clone(), space_of(grid, headings));
-    let frame = GridFrame {
-        resolution_m: RESOLUTION_M,
-        map_from_grid: Pose::new(1.0, -2.0, 0.3),
-    };
+    let frame = GridFrame::new(RESOLUTION_M, Pose::new(1.0, -2.0, 0.3));
     let corner = || (-4.0..5.0f64, -4.0..4.0f64).prop_map(|(x, y)| [x, y]);
     let region = vec(corner(), 2..6).prop_map(|corners| Region::new(&corners).expect("corners"));
     let within = (0.0..6.3f64, 0.0..6.3f64).prop_map(|(from, to)| HeadingInterval { from, to });
@@ -201,15 +223,9 @@ pub(crate) fn plain_votes_within(
         let field = reference::field(grid, program, space, heading);
         for (i, &intensity) in field.iter().enumerate() {
             let (x, y) = (i % grid.width(), i / grid.width());
-            collector.take(Vote {
-                x: x as u16,
-                y: y as u16,
-                heading: heading as u16,
-                intensity: match limits.hold_cell(x, y) && limits.hold_heading(heading) {
-                    true => intensity,
-                    false => 0,
-                },
-            });
+            let is_held = limits.hold_cell(x, y) && limits.hold_heading(heading);
+            let intensity = if is_held { intensity } else { 0 };
+            collector.take(vote(x as u16, y as u16, heading as u16, intensity));
         }
     }
     collector.finished()

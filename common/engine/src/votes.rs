@@ -64,6 +64,11 @@ impl VoteSet {
         self.certified_floor = self.certified_floor.max(floor);
         let least = least.unwrap_or(self.certified_floor);
         self.votes.retain(|vote| vote.intensity >= least);
+        self.take_range();
+    }
+
+    /// Reads the best intensity and the floor from the votes, which are sorted.
+    fn take_range(&mut self) {
         self.best = self.votes.first().map_or(0, |vote| vote.intensity);
         self.floor = self.votes.last().map_or(0, |vote| vote.intensity);
     }
@@ -80,8 +85,7 @@ impl VoteSet {
     pub(crate) fn put_in_order(&mut self) {
         if self.cut {
             self.votes.sort_unstable_by_key(order);
-            self.best = self.votes.first().map_or(0, |vote| vote.intensity);
-            self.floor = self.votes.last().map_or(0, |vote| vote.intensity);
+            self.take_range();
         }
     }
 }
@@ -229,13 +233,12 @@ impl Collector {
         self.make_room();
         self.votes.sort_unstable_by_key(order);
         let best_is_cut = self.cut == Some(self.best);
-        outcome.floor = self.votes.last().map_or(0, |vote| vote.intensity);
         outcome.certified_floor = self.floor().saturating_add(u16::from(best_is_cut));
-        outcome.best = self.votes.first().map_or(0, |vote| vote.intensity);
         outcome.truncated = best_is_cut || self.crowded_below > self.share_floor();
         outcome.cut = false;
         outcome.poses_evaluated = self.evaluated;
         std::mem::swap(&mut outcome.votes, &mut self.votes);
+        outcome.take_range();
         self.votes.clear();
     }
 
@@ -259,16 +262,12 @@ mod tests {
 
     use super::*;
     use crate::space::Space;
+    use crate::testing::vote;
 
     fn collect(config: CollectConfig, intensities: &[u16]) -> VoteSet {
         let mut collector = Collector::new(config);
         for (x, &intensity) in (0..).zip(intensities) {
-            collector.take(Vote {
-                x,
-                y: 0,
-                heading: 0,
-                intensity,
-            });
+            collector.take(vote(x, 0, 0, intensity));
         }
         collector.finished()
     }
@@ -325,12 +324,6 @@ mod tests {
     #[test]
     fn candidates_are_added_below_the_floor_while_distinct_ones_are_wanted() {
         let space = Space::new(360, 0.1, 100, 100).unwrap();
-        let vote = |x, heading, intensity| Vote {
-            x,
-            y: 0,
-            heading,
-            intensity,
-        };
         let config = CollectConfig {
             floor_share: 0.9,
             ..CollectConfig::default()
@@ -339,7 +332,7 @@ mod tests {
         // The candidates are near the best; far; near that; turned by more than 6.5 degrees; too
         // many.
         let others = [(2, 3, 8), (9, 0, 5), (9, 6, 4), (0, 353, 7), (50, 0, 2)];
-        let others = others.map(|(x, heading, intensity)| vote(x, heading, intensity));
+        let others = others.map(|(x, heading, intensity)| vote(x, 0, heading, intensity));
         let mut kept = Vec::new();
         let distinct = Distinct::new(&space, 3, &mut kept);
         set.add_candidates(&mut others.to_vec(), distinct);
@@ -363,14 +356,14 @@ mod tests {
             let forward = collect(config, &intensities);
             let mut backward = Collector::new(config);
             for (x, &intensity) in intensities.iter().enumerate().rev() {
-                backward.take(Vote { x: x as u16, y: 0, heading: 0, intensity });
+                backward.take(vote(x as u16, 0, 0, intensity));
             }
             let backward = backward.finished();
             prop_assert_eq!(&backward, &forward);
             // The result does not depend on the number of collectors either.
             let mut parts = [Collector::new(config), Collector::new(config), Collector::new(config)];
             for (x, &intensity) in intensities.iter().enumerate() {
-                parts[x % 3].take(Vote { x: x as u16, y: 0, heading: 0, intensity });
+                parts[x % 3].take(vote(x as u16, 0, 0, intensity));
             }
             let merge = |mut all: Collector, part| {
                 all.merge(&part);

@@ -22,10 +22,7 @@ use engine::vote_search::{Outcome, Preparation, Prior, VoteSearch, VoteSearchCon
 use geometry::Pose;
 use messages::Verdict;
 
-const FRAME: GridFrame = GridFrame {
-    resolution_m: 0.1,
-    map_from_grid: Pose::new(-3.0, 2.0, 0.4),
-};
+const FRAME: GridFrame = GridFrame::new(0.1, Pose::new(-3.0, 2.0, 0.4));
 
 /// Number of passes over all scans before counting. Results alternate between two buffers: with an
 /// odd number of scans, each buffer has held each scan's results after two passes.

@@ -7,10 +7,7 @@ use geometry::Pose;
 
 pub(crate) const SIDES: (usize, usize) = (61, 40);
 
-pub(crate) const FRAME: GridFrame = GridFrame {
-    resolution_m: 0.05,
-    map_from_grid: Pose::new(1.0, 2.0, 0.5),
-};
+pub(crate) const FRAME: GridFrame = GridFrame::new(0.05, Pose::new(1.0, 2.0, 0.5));
 
 /// Returns a room with a pillar, a box placed by `seed`, and an unknown part.
 pub(crate) fn occupancy(seed: usize) -> Vec<u8> {

@@ -62,10 +62,7 @@ pub fn ground_truth(message: &PoseStamped) -> Result<GroundTruth, ConversionErro
 }
 
 fn measured(time: Time) -> Stamp {
-    Stamp {
-        measured_ns: time.as_ns(),
-        ..Stamp::default()
-    }
+    Stamp::measured_at(time.as_ns())
 }
 
 #[cfg(test)]

@@ -37,10 +37,7 @@ impl SearchedMap {
         settings: Settings,
     ) -> Result<Self, EngineError> {
         let view = Map {
-            frame: GridFrame {
-                resolution_m: map.resolution_m,
-                map_from_grid: map.map_from_grid,
-            },
+            frame: GridFrame::new(map.resolution_m, map.map_from_grid),
             sides: (map.width as usize, map.height as usize),
             occupancy: &map.cells,
             rules,

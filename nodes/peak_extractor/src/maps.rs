@@ -96,11 +96,7 @@ mod tests {
             width: 30,
             height: 20,
             resolution_m: 0.05,
-            map_from_grid: Pose2 {
-                x: -1.0,
-                y: 2.0,
-                yaw: 0.5,
-            },
+            map_from_grid: Pose2::new(-1.0, 2.0, 0.5),
             ..MapHeader::default()
         }
     }

@@ -170,10 +170,7 @@ impl Outlet {
         if let Err(error) = self.memory_limit.check_grid(&grid) {
             return Ok(report.map_refused(&error)?);
         }
-        let stamp = Stamp {
-            measured_ns,
-            ..Stamp::default()
-        };
+        let stamp = Stamp::measured_at(measured_ns);
         let header = self.cells.header(MapHeader {
             stamp: entering(stamp, self.maps_sent),
             map_id,

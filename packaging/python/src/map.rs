@@ -157,10 +157,7 @@ impl Map {
     pub(crate) fn view(&self, rules: CellRules) -> MapView<'_> {
         let grid = &*self.grid;
         MapView {
-            frame: GridFrame {
-                resolution_m: grid.resolution_m,
-                map_from_grid: grid.map_from_grid,
-            },
+            frame: GridFrame::new(grid.resolution_m, grid.map_from_grid),
             sides: (grid.width as usize, grid.height as usize),
             occupancy: &grid.cells,
             rules,

@@ -73,11 +73,7 @@ mod tests {
 
     fn hypothesis(x: f64) -> Hypothesis {
         Hypothesis {
-            map_from_laser: Pose2 {
-                x,
-                y: 2.0,
-                yaw: 0.5,
-            },
+            map_from_laser: Pose2::new(x, 2.0, 0.5),
             score: 0.9,
             ..Zeroable::zeroed()
         }

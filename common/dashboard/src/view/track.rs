@@ -81,11 +81,7 @@ mod tests {
         };
         let best = Hypothesis {
             map_id,
-            map_from_laser: Pose2 {
-                x,
-                y: 0.0,
-                yaw: 0.0,
-            },
+            map_from_laser: Pose2::new(x, 0.0, 0.0),
             ..Zeroable::zeroed()
         };
         Answer::new(&header, &[best], &|_| None, 0)

@@ -70,11 +70,7 @@ pub(crate) mod tests {
                 counter: 7,
             },
             sent_ns: 23_000_000,
-            map_from_laser: Pose2 {
-                x,
-                y: 2.0,
-                yaw: 0.5,
-            },
+            map_from_laser: Pose2::new(x, 2.0, 0.5),
             state: state as u32,
             from_scan: 1,
             pose_known: 1,

@@ -130,11 +130,7 @@ mod tests {
         "...........",
         "...........",
     ];
-    const POSE: GridPose = GridPose {
-        x: 1.5,
-        y: 4.5,
-        heading: 0.0,
-    };
+    const POSE: GridPose = GridPose::new(1.5, 4.5, 0.0);
 
     fn ends(readings: &[(f64, f64)]) -> Ends {
         let end = |&(degrees, reading): &(f64, f64)| {

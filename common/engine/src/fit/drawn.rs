@@ -18,9 +18,6 @@ pub(crate) fn field_of(grid: &Grid) -> DistanceField {
 }
 
 fn of_cells(sides: (usize, usize), occupancy: &[u8]) -> DistanceField {
-    let frame = GridFrame {
-        resolution_m: 0.1,
-        map_from_grid: Pose::IDENTITY,
-    };
+    let frame = GridFrame::new(0.1, Pose::IDENTITY);
     DistanceField::new(frame, sides, occupancy, CellRules::default()).expect("drawings are maps")
 }

@@ -105,19 +105,14 @@ mod tests {
 
     use super::*;
     use crate::fit::Ends;
+    use crate::testing::scan_from;
 
     fn space() -> Space {
         Space::new(360, 0.1, 500, 500).unwrap()
     }
 
     fn scan(ranges: &[f32]) -> Scan<'_> {
-        Scan {
-            angle_min: -1.0,
-            angle_increment: 0.25,
-            range_min_m: 0.0,
-            range_max_m: 30.0,
-            ranges,
-        }
+        scan_from(-1.0, 0.25, ranges)
     }
 
     #[test]
@@ -169,20 +164,14 @@ mod tests {
         };
         let mut ends = Ends::default();
         ends.take(&[sound], 0.1).unwrap();
-        for broken in [
-            Reading {
-                range_m: -1.0,
-                ..sound
-            },
-            Reading {
-                bearing: f64::NAN,
-                ..sound
-            },
-            Reading {
-                weight: 3.0,
-                ..sound
-            },
-        ] {
+        let breaks: [fn(&mut Reading); 3] = [
+            |reading| reading.range_m = -1.0,
+            |reading| reading.bearing = f64::NAN,
+            |reading| reading.weight = 3.0,
+        ];
+        for to_break in breaks {
+            let mut broken = sound;
+            to_break(&mut broken);
             let refused = ends.take(&[sound, broken], 0.1);
             assert_eq!(refused, Err(EngineError::Reading { beam: 1 }));
             assert_eq!(ends.silent().len() + ends.ends.len(), 0);

@@ -86,10 +86,7 @@ mod tests {
     use super::super::drawn;
     use super::*;
 
-    const FRAME: GridFrame = GridFrame {
-        resolution_m: 0.01,
-        map_from_grid: Pose::new(1.0, 2.0, 0.5),
-    };
+    const FRAME: GridFrame = GridFrame::new(0.01, Pose::new(1.0, 2.0, 0.5));
 
     #[test]
     fn squares_are_as_large_as_allowed() {

@@ -8,24 +8,13 @@ use super::*;
 const KEPT: usize = 5;
 const SECOND_NS: i64 = 1_000_000_000;
 
-fn stamp(measured_ns: i64) -> Stamp {
-    Stamp {
-        measured_ns,
-        ..Stamp::default()
-    }
-}
-
 fn turned(yaw: f64) -> Pose2 {
-    Pose2 {
-        x: 3.0,
-        y: 4.0,
-        yaw,
-    }
+    Pose2::new(3.0, 4.0, yaw)
 }
 
 fn scan(measured_ns: i64) -> ScanHeader {
     ScanHeader {
-        stamp: stamp(measured_ns),
+        stamp: Stamp::measured_at(measured_ns),
         frame: FrameName::new("laser"),
         ..Zeroable::zeroed()
     }
@@ -33,7 +22,7 @@ fn scan(measured_ns: i64) -> ScanHeader {
 
 fn odometry(child: &str, measured_ns: i64, yaw: f64) -> Odometry {
     Odometry {
-        stamp: stamp(measured_ns),
+        stamp: Stamp::measured_at(measured_ns),
         odom_from_child: turned(yaw),
         child_frame: FrameName::new(child),
         ..Zeroable::zeroed()
@@ -42,7 +31,7 @@ fn odometry(child: &str, measured_ns: i64, yaw: f64) -> Odometry {
 
 fn truth(measured_ns: i64, yaw: f64) -> GroundTruth {
     GroundTruth {
-        stamp: stamp(measured_ns),
+        stamp: Stamp::measured_at(measured_ns),
         map_from_laser: turned(yaw),
         frame: FrameName::new("map"),
     }
@@ -136,7 +125,7 @@ fn odometry_of_the_base_is_turned_by_the_mount() {
     assert_eq!(heading(BY_ODOMETRY, &known, &history), 1.75);
     history.on_odometry(&odometry("laser", 11, 0.25));
     let later = ScanHeader {
-        stamp: stamp(11),
+        stamp: Stamp::measured_at(11),
         ..known
     };
     assert_eq!(heading(BY_ODOMETRY, &later, &history), 0.75);
@@ -147,11 +136,7 @@ fn the_laser_sits_on_what_the_odometry_is_about() {
     let mut history = history(&[]);
     history.on_odometry(&odometry("base_link", 10, FRAC_PI_2));
     let mounted = ScanHeader {
-        base_from_laser: Pose2 {
-            x: 0.5,
-            y: 0.0,
-            yaw: 0.25,
-        },
+        base_from_laser: Pose2::new(0.5, 0.0, 0.25),
         mount_known: 1,
         ..scan(12)
     };

@@ -6,10 +6,7 @@ use super::*;
 const MS: i64 = 1_000_000;
 
 fn stamp(ms: i64) -> Stamp {
-    Stamp {
-        measured_ns: ms * MS,
-        ..Stamp::default()
-    }
+    Stamp::measured_at(ms * MS)
 }
 
 /// A laser ahead at 0.5 m or behind at -0.5 m, with three beams at 0, 90 and 180 degrees.
@@ -19,10 +16,9 @@ fn scan(laser: &str, ms: i64) -> ScanHeader {
         stamp: stamp(ms),
         angle_increment: std::f64::consts::FRAC_PI_2,
         range_max_m: 30.0,
-        base_from_laser: Pose2 {
-            x: if ahead { 0.5 } else { -0.5 },
-            y: 0.0,
-            yaw: if ahead { 0.0 } else { std::f64::consts::PI },
+        base_from_laser: match ahead {
+            true => Pose2::new(0.5, 0.0, 0.0),
+            false => Pose2::new(-0.5, 0.0, std::f64::consts::PI),
         },
         mount_known: 1,
         laser: Name::new(laser),
@@ -35,11 +31,7 @@ fn scan(laser: &str, ms: i64) -> ScanHeader {
 fn odometry(ms: i64) -> Odometry {
     Odometry {
         stamp: stamp(ms),
-        odom_from_child: Pose2 {
-            x: ms as f64 / 1000.0,
-            y: 0.0,
-            yaw: 0.0,
-        },
+        odom_from_child: Pose2::new(ms as f64 / 1000.0, 0.0, 0.0),
         child_frame: FrameName::new("base_link"),
         ..Odometry::zeroed()
     }
@@ -103,10 +95,7 @@ fn the_motion_within_a_scan_is_taken_out() {
 #[test]
 fn odometry_of_the_stamp_of_a_scan_counts_for_it_to_the_nanosecond() {
     for odd in [0, 1] {
-        let at = |ms: i64| Stamp {
-            measured_ns: ms * MS + odd,
-            ..Stamp::default()
-        };
+        let at = |ms: i64| Stamp::measured_at(ms * MS + odd);
         let mut joiner = Joiner::new(JoinConfig::default());
         for ms in [0, 1000] {
             joiner.on_odometry(&Odometry {

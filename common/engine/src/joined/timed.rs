@@ -95,7 +95,7 @@ impl Joiner {
     /// Adds the pose of the base by odometry.
     pub fn add_odometry(&mut self, stamp_ns: i64, odom_from_base: Pose) {
         self.on_odometry(&Odometry {
-            stamp: stamp(stamp_ns),
+            stamp: Stamp::measured_at(stamp_ns),
             odom_from_child: odom_from_base.into(),
             child_frame: FrameName::new("base"),
             ..Odometry::zeroed()
@@ -106,7 +106,7 @@ impl Joiner {
     pub fn add_scan(&mut self, laser: usize, timed: &TimedScan<'_>) {
         let TimedScan { scan, .. } = *timed;
         let header = ScanHeader {
-            stamp: stamp(timed.stamp_ns),
+            stamp: Stamp::measured_at(timed.stamp_ns),
             angle_min: scan.angle_min,
             angle_increment: scan.angle_increment,
             time_increment_s: timed.time_increment_s,
@@ -119,12 +119,5 @@ impl Joiner {
             ..ScanHeader::zeroed()
         };
         self.on_scan(&header, scan.ranges);
-    }
-}
-
-fn stamp(measured_ns: i64) -> Stamp {
-    Stamp {
-        measured_ns,
-        ..Stamp::default()
     }
 }

@@ -12,10 +12,7 @@ use crate::testing::{any_grid, any_scan, occupancy_of, scan_from};
 fn prepared(grid: &Grid, resolution_m: f64, votes: VoteConfig) -> Option<PreparedMap> {
     let occupancy = occupancy_of(grid);
     let map = Map {
-        frame: GridFrame {
-            resolution_m,
-            map_from_grid: Pose::new(1.0, -2.0, 0.3),
-        },
+        frame: GridFrame::new(resolution_m, Pose::new(1.0, -2.0, 0.3)),
         sides: (grid.width(), grid.height()),
         occupancy: &occupancy,
         rules: CellRules::default(),

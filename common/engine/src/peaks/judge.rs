@@ -270,11 +270,7 @@ mod tests {
     fn deviations(heading_is_known: bool, curvature: Matrix3<f64>) -> [f64; 3] {
         let measured = distance_field(&["....", ".##.", "#..#"]);
         let refined = Refined {
-            pose: GridPose {
-                x: 0.0,
-                y: 0.0,
-                heading: 0.0,
-            },
+            pose: GridPose::new(0.0, 0.0, 0.0),
             curvature,
             variance: 0.5,
             weight: 100.0,

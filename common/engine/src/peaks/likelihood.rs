@@ -64,23 +64,11 @@ pub(super) fn assign(places: &mut [Place], leads: &[f64], doubt: f64, config: &P
 
 #[cfg(test)]
 mod tests {
-    use geometry::{Covariance, Pose};
-
     use super::*;
+    use crate::testing::place;
 
     fn assigned(scores: &[f64], leads: &[f64], doubt: f64) -> Vec<f64> {
-        let place = |&score: &f64| Place {
-            map: 0,
-            map_from_laser: Pose::IDENTITY,
-            covariance: Covariance::from_deviations(0.1, 0.1, 0.01),
-            score,
-            probability: 0.0,
-            intensity: 1,
-            possible: 1,
-            drawn_doubt: 0.0,
-            support: 1,
-        };
-        let mut places: Vec<Place> = scores.iter().map(place).collect();
+        let mut places: Vec<Place> = scores.iter().map(|&score| place(0, score, 1)).collect();
         assign(&mut places, leads, doubt, &PeakConfig::default());
         places.iter().map(|place| place.probability).collect()
     }
@@ -101,14 +89,9 @@ mod tests {
 
     #[test]
     fn a_single_place_that_fits_badly_is_doubted() {
-        let [alone] = assigned(&[0.9], &[0.0], 0.0)[..] else {
-            panic!("one place");
-        };
-        assert!(alone > 0.999);
-        let [bad] = assigned(&[0.3], &[0.0], 0.5)[..] else {
-            panic!("one place");
-        };
-        assert!(bad < 0.2, "{bad}");
+        let alone = |score, doubt| assigned(&[score], &[0.0], doubt)[0];
+        assert!(alone(0.9, 0.0) > 0.999);
+        assert!(alone(0.3, 0.5) < 0.2, "{}", alone(0.3, 0.5));
     }
 
     #[test]

@@ -102,28 +102,20 @@ pub fn merge(all: &[Found], config: &PeakConfig) -> Merged {
 
 #[cfg(test)]
 mod tests {
-    use geometry::{Covariance, Pose};
     use messages::Verdict;
     use proptest::collection::vec;
     use proptest::prelude::*;
 
     use super::*;
+    use crate::testing::place;
 
     /// Places on a map with 100 possible votes, from their scores and votes.
     fn found(map: u32, lead: u16, doubt: f64, places: &[(f64, u16)]) -> Found {
-        let place = |&(score, intensity): &(f64, u16)| Place {
-            map,
-            map_from_laser: Pose::new(score, f64::from(intensity), 0.0),
-            covariance: Covariance::from_deviations(0.1, 0.1, 0.01),
-            score,
-            probability: 0.0,
-            intensity,
-            possible: 100,
-            drawn_doubt: 0.0,
-            support: 1,
-        };
+        let places = places.iter();
         Found {
-            places: places.iter().map(place).collect(),
+            places: places
+                .map(|&(score, intensity)| place(map, score, intensity))
+                .collect(),
             margin: Margin {
                 doubt,
                 ..Margin::default()

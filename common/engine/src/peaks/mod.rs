@@ -114,8 +114,8 @@ pub struct Place {
     pub support: u64,
 }
 
-/// Places found for a scan, and the verdict.
-#[derive(Debug, Clone, PartialEq)]
+/// Places found for a scan, and the verdict; none by default, as for a scan without votes.
+#[derive(Debug, Clone, PartialEq, Default)]
 pub struct Places {
     /// Distinct places, best first.
     pub places: Vec<Place>,
@@ -239,20 +239,6 @@ impl Places {
         self.confidence = 0.0;
         self.inlier_share = 0.0;
         self.classes.clear();
-    }
-}
-
-impl Default for Places {
-    /// Result of a scan without votes.
-    fn default() -> Self {
-        Places {
-            places: Vec::new(),
-            verdict: Verdict::NoScan,
-            alternatives: 0,
-            confidence: 0.0,
-            inlier_share: 0.0,
-            classes: Vec::new(),
-        }
     }
 }
 

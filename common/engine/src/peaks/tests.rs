@@ -4,12 +4,9 @@ use super::*;
 use crate::beams::BeamConfig;
 use crate::grid::{CellRules, drawn};
 use crate::space::Space;
-use crate::testing::{ranges_at, scan_around};
+use crate::testing::{ranges_at, scan_around, vote};
 
-const FRAME: GridFrame = GridFrame {
-    resolution_m: 0.1,
-    map_from_grid: Pose::new(0.0, 0.0, FRAC_PI_2),
-};
+const FRAME: GridFrame = GridFrame::new(0.1, Pose::new(0.0, 0.0, FRAC_PI_2));
 
 /// A room in which every pose is distinguishable.
 const ROOM: [&str; 20] = [
@@ -42,15 +39,6 @@ const OPEN: &str = "#......................................#";
 const HALL: [&str; 12] = [
     WALL, OPEN, OPEN, OPEN, OPEN, OPEN, OPEN, OPEN, OPEN, OPEN, OPEN, WALL,
 ];
-
-fn vote(x: u16, y: u16, heading: u16, intensity: u16) -> Vote {
-    Vote {
-        x,
-        y,
-        heading,
-        intensity,
-    }
-}
 
 /// Places of a scan in a drawn building.
 fn places(rows: &[&str], ranges: &[f32], input: &PeakInput<'_>) -> Places {

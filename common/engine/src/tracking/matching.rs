@@ -108,10 +108,7 @@ fn around(ends: &Ends, resolution_m: f64) -> Result<DistanceField, EngineError> 
         occupancy[cell(y) * side + cell(x)] = 100;
     }
     let corner = -(half as f64) * resolution_m;
-    let frame = GridFrame {
-        resolution_m,
-        map_from_grid: Pose::new(corner, corner, 0.0),
-    };
+    let frame = GridFrame::new(resolution_m, Pose::new(corner, corner, 0.0));
     DistanceField::new(frame, (side, side), &occupancy, CellRules::default())
 }
 

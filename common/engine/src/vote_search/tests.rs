@@ -31,10 +31,7 @@ const ROOM: [&str; 12] = [
     "#.......#...........",
     "#########...........",
 ];
-const FRAME: GridFrame = GridFrame {
-    resolution_m: 0.25,
-    map_from_grid: Pose::new(3.0, -1.0, 0.5),
-};
+const FRAME: GridFrame = GridFrame::new(0.25, Pose::new(3.0, -1.0, 0.5));
 
 fn vote_search(prior: Prior) -> VoteSearch {
     let grid = grid(&ROOM);
@@ -115,10 +112,7 @@ struct All {
 
 /// Debug text of every result for a scan, for comparison.
 fn said(all: &mut All, grid: &Grid, scan: &AnyScan, heading: Option<f64>) -> Option<String> {
-    let frame = GridFrame {
-        resolution_m: RESOLUTION_M,
-        map_from_grid: Pose::new(1.0, -2.0, 0.3),
-    };
+    let frame = GridFrame::new(RESOLUTION_M, Pose::new(1.0, -2.0, 0.3));
     let config = VoteSearchConfig {
         headings: 48,
         votes: scan.config(),
@@ -190,10 +184,7 @@ proptest! {
 #[test]
 fn a_map_that_takes_more_memory_than_is_allowed_is_refused_with_the_figure() {
     let grid = || crate::grid::drawn::grid(&["####", "#..#", "####"]);
-    let frame = GridFrame {
-        resolution_m: 0.5,
-        map_from_grid: Pose::IDENTITY,
-    };
+    let frame = GridFrame::new(0.5, Pose::IDENTITY);
     let prepare = |memory_limit, prior| {
         let config = VoteSearchConfig {
             memory_limit: Some(memory_limit),

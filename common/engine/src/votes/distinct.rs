@@ -107,17 +107,13 @@ fn are_near(a: &Vote, b: &Vote, space: &Space) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::testing::vote;
 
     #[test]
     fn of_poses_near_each_other_the_first_is_distinct() {
         let space = Space::new(360, 0.1, 100, 100).unwrap();
         let votes = [(0, 0), (2, 6), (4, 0), (0, 353), (4, 6), (50, 0), (60, 0)];
-        let votes = votes.map(|(x, heading)| Vote {
-            x,
-            y: 0,
-            heading,
-            intensity: 9,
-        });
+        let votes = votes.map(|(x, heading)| vote(x, 0, heading, 9));
         let found = distinct(&votes, &space, 4);
         let found: Vec<_> = found.iter().map(|vote| (vote.x, vote.heading)).collect();
         assert_eq!(found, [(0, 0), (4, 0), (0, 353), (50, 0)]);

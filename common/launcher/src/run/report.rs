@@ -166,11 +166,7 @@ mod tests {
     fn truth(measured_ns: i64, x: f64) -> GroundTruth {
         let mut truth = GroundTruth::zeroed();
         truth.stamp.measured_ns = measured_ns;
-        truth.map_from_laser = Pose2 {
-            x,
-            y: -2.0,
-            yaw: std::f64::consts::PI,
-        };
+        truth.map_from_laser = Pose2::new(x, -2.0, std::f64::consts::PI);
         truth
     }
 

@@ -20,18 +20,11 @@ fn map_heading() -> f64 {
 }
 
 fn at(measured_ns: i64) -> Stamp {
-    Stamp {
-        measured_ns,
-        ..Stamp::default()
-    }
+    Stamp::measured_at(measured_ns)
 }
 
 fn turned(yaw: f64) -> Pose2 {
-    Pose2 {
-        x: 0.0,
-        y: 0.0,
-        yaw,
-    }
+    Pose2::new(0.0, 0.0, yaw)
 }
 
 #[test]

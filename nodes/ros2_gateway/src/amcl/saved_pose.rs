@@ -133,10 +133,7 @@ mod tests {
 
     fn header(state: TrackState, x: f64) -> PoseHeader {
         PoseHeader {
-            stamp: Stamp {
-                measured_ns: 7 * S,
-                ..Stamp::default()
-            },
+            stamp: Stamp::measured_at(7 * S),
             state: state as u32,
             pose_known: 1,
             mount_known: 1,

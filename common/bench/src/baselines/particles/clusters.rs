@@ -48,11 +48,7 @@ fn mean<'a>(particles: impl Iterator<Item = &'a Particle>) -> GridPose {
         sin += w * pose.heading.sin();
         cos += w * pose.heading.cos();
     }
-    GridPose {
-        x: sum.0 / weight,
-        y: sum.1 / weight,
-        heading: sin.atan2(cos),
-    }
+    GridPose::new(sum.0 / weight, sum.1 / weight, sin.atan2(cos))
 }
 
 /// The 26 neighbours of a bin; headings wrap around.

@@ -214,10 +214,7 @@ pub(super) mod tests {
         };
         let from_below = rows.iter().rev().flat_map(|row| row.bytes());
         let occupancy: Vec<u8> = from_below.map(cell).collect();
-        let frame = GridFrame {
-            resolution_m: 0.1,
-            map_from_grid: Pose::IDENTITY,
-        };
+        let frame = GridFrame::new(0.1, Pose::IDENTITY);
         let sides = (rows[0].len(), rows.len());
         DistanceField::new(frame, sides, &occupancy, CellRules::default()).unwrap()
     }

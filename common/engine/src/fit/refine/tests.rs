@@ -22,11 +22,7 @@ const ROOM: [&str; 12] = [
     "#.......#...........",
     "#########...........",
 ];
-const TRUTH: GridPose = GridPose {
-    x: 5.25,
-    y: 7.75,
-    heading: 0.3,
-};
+const TRUTH: GridPose = GridPose::new(5.25, 7.75, 0.3);
 
 /// Scan of a laser at the pose, with readings up to the middle of the walls.
 fn scan(rows: &[&str], pose: GridPose) -> Ends {
@@ -51,11 +47,7 @@ fn scan(rows: &[&str], pose: GridPose) -> Ends {
 fn a_pose_nearby_is_moved_to_where_the_scan_was_taken() {
     let (map, ends) = (distance_field(&ROOM), scan(&ROOM, TRUTH));
     for (x, y, turn) in [(0.0, 0.0, 0.0), (0.7, -0.6, 0.03), (-0.8, 0.5, -0.05)] {
-        let start = GridPose {
-            x: TRUTH.x + x,
-            y: TRUTH.y + y,
-            heading: TRUTH.heading + turn,
-        };
+        let start = GridPose::new(TRUTH.x + x, TRUTH.y + y, TRUTH.heading + turn);
         let refined = map.refine(&ends, start, false, &FitConfig::default());
         let off = (refined.pose.x - TRUTH.x).hypot(refined.pose.y - TRUTH.y);
         // Readings end up to 0.05 cells before the middle of a wall.
@@ -86,11 +78,7 @@ fn what_no_beam_shows_stays_as_it_was() {
         "..............................",
         "##############################",
     ];
-    let pose = GridPose {
-        x: 15.0,
-        y: 2.5,
-        heading: 0.0,
-    };
+    let pose = GridPose::new(15.0, 2.5, 0.0);
     let (map, ends) = (distance_field(&CORRIDOR), scan(&CORRIDOR, pose));
     let start = GridPose {
         x: 13.0,

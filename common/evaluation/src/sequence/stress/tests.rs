@@ -58,10 +58,7 @@ fn material() -> Material {
     };
     let steps: Vec<Step> = (0..41).map(step).collect();
     let odometry = steps.iter().map(|step| Odometry {
-        stamp: Stamp {
-            measured_ns: step.scan.stamp_ns,
-            ..Stamp::default()
-        },
+        stamp: Stamp::measured_at(step.scan.stamp_ns),
         odom_from_child: step.map_from_laser.into(),
         ..Odometry::zeroed()
     });
