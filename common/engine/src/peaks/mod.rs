@@ -10,6 +10,7 @@ mod config;
 mod judge;
 mod likelihood;
 mod merged;
+mod refined;
 pub mod sentence;
 mod summits;
 
