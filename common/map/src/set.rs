@@ -196,10 +196,7 @@ fn named(yaml: &Path) -> MapFile {
 
 fn listed(path: &Path) -> Result<MapSet, MapError> {
     check_kind(path)?;
-    let failed = |source| MapError::Description {
-        path: path.to_owned(),
-        source,
-    };
+    let failed = MapError::unread(path);
     let bytes = fs::metadata(path).map_err(failed)?.len();
     if bytes > MAX_LIST_BYTES {
         let reason = format!("it has {bytes} bytes: allowed are {MAX_LIST_BYTES}");
@@ -230,10 +227,7 @@ fn listed(path: &Path) -> Result<MapSet, MapError> {
 }
 
 fn in_folder(folder: &Path, mut note: impl FnMut(&str)) -> Result<Vec<MapFile>, MapError> {
-    let failed = |source| MapError::Description {
-        path: folder.to_owned(),
-        source,
-    };
+    let failed = MapError::unread(folder);
     let (mut maps, mut others) = (Vec::new(), Vec::new());
     for entry in fs::read_dir(folder).map_err(failed)? {
         let path = entry.map_err(failed)?.path();
