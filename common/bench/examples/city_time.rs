@@ -107,7 +107,7 @@ fn main() -> Result<(), Box<dyn Error>> {
             .filter(|range| **range > options.reach)
             .for_each(|range| *range = f32::INFINITY);
         let (outcome, cost) = cpu_ms(|| {
-            let found = vote_search.search_in(&mut workspace, &scan.scan(), &|| false);
+            let found = vote_search.search_in(&mut workspace, &scan.scan(), None, &|| false);
             found.map(|outcome| outcome.and_then(|outcome| outcome.found.votes.first().copied()))
         });
         costs.push(cost);

@@ -226,7 +226,7 @@ impl Localizer {
         maps.resize_with(self.maps.len(), OnMap::default);
         if let [map] = &self.maps[..] {
             let OnMap { votes, peaks } = &mut maps[0];
-            let found = map.vote_search.search_with(votes, scan, heading, stop)?;
+            let found = map.vote_search.search_in(votes, scan, heading, stop)?;
             let Some(outcome) = found else {
                 return Ok(None);
             };

@@ -58,8 +58,8 @@ pub struct Workspace {
 }
 
 impl Workspace {
-    /// Intensities of all cells, row by row from the lowest y, at the heading of the last
-    /// [`VoteSearch::search_at_in`]; empty before the first.
+    /// Intensities of all cells, row by row from the lowest y, at the heading of the last search at
+    /// a heading; empty before the first.
     pub fn intensities(&self) -> &[u16] {
         &self.field
     }
@@ -180,27 +180,28 @@ impl VoteSearch {
         &self.prepared.space
     }
 
-    /// Searches all poses in a new workspace, see [`VoteSearch::search_in`].
+    /// Searches all poses in a new workspace.
     ///
     /// # Errors
-    /// If the scan is rejected, see [`Observation::check`], or the map was prepared for known
-    /// headings.
+    /// See [`VoteSearch::search_in`].
     pub fn search<'s>(
         &self,
         scan: impl Into<Observation<'s>>,
         stop: &dyn Fn() -> bool,
     ) -> Result<Option<Outcome>, EngineError> {
         let mut workspace = Workspace::default();
-        let found = self.search_in(&mut workspace, scan, stop)?.is_some();
+        let found = self.search_in(&mut workspace, scan, None, stop)?.is_some();
         Ok(found.then_some(workspace.outcome))
     }
 
-    /// Searches all poses or, if a heading in the map frame is given (radians), all positions;
+    /// Searches all poses or, if a heading in the map frame is given (radians), x and y at that
+    /// heading; then it leaves the intensities of all cells in [`Workspace::intensities`]. Returns
     /// `None` if `stop` returned true before the end.
     ///
     /// # Errors
-    /// See [`VoteSearch::search_in`] and [`VoteSearch::search_at_in`].
-    pub fn search_with<'w, 's>(
+    /// If the scan is rejected, see [`Observation::check`], the heading is not finite, or the map
+    /// was prepared for the other [`Prior`].
+    pub fn search_in<'w, 's>(
         &self,
         workspace: &'w mut Workspace,
         scan: impl Into<Observation<'s>>,
@@ -208,20 +209,15 @@ impl VoteSearch {
         stop: &dyn Fn() -> bool,
     ) -> Result<Option<&'w Outcome>, EngineError> {
         match heading {
-            Some(heading) => self.search_at_in(workspace, scan, heading, stop),
-            None => self.search_in(workspace, scan, stop),
+            Some(heading) => self.at_heading(workspace, scan.into(), heading, stop),
+            None => self.at_any_heading(workspace, scan.into(), stop),
         }
     }
 
-    /// Searches all poses; `None` if `stop` returned true before the end.
-    ///
-    /// # Errors
-    /// If the scan is rejected, see [`Observation::check`], or the map was prepared for known
-    /// headings.
-    pub fn search_in<'w, 's>(
+    fn at_any_heading<'w>(
         &self,
         workspace: &'w mut Workspace,
-        scan: impl Into<Observation<'s>>,
+        scan: Observation<'_>,
         stop: &dyn Fn() -> bool,
     ) -> Result<Option<&'w Outcome>, EngineError> {
         let index = self.index()?;
@@ -274,12 +270,11 @@ impl VoteSearch {
         Ok(blocks)
     }
 
-    /// Searches x and y at a heading in a new workspace, see [`VoteSearch::search_at_in`]; returns
-    /// the outcome and the intensities of all cells.
+    /// Searches x and y at a heading in the map frame (radians) in a new workspace; returns the
+    /// outcome and the intensities of all cells.
     ///
     /// # Errors
-    /// If the scan is rejected, see [`Observation::check`], the heading is not finite, or the map
-    /// was prepared for unknown headings.
+    /// See [`VoteSearch::search_in`].
     pub fn search_at<'s>(
         &self,
         scan: impl Into<Observation<'s>>,
@@ -287,21 +282,15 @@ impl VoteSearch {
         stop: &dyn Fn() -> bool,
     ) -> Result<Option<(Outcome, Vec<u16>)>, EngineError> {
         let mut workspace = Workspace::default();
-        let found = self.search_at_in(&mut workspace, scan, heading, stop)?;
+        let found = self.search_in(&mut workspace, scan, Some(heading), stop)?;
         let found = found.is_some();
         Ok(found.then_some((workspace.outcome, workspace.field)))
     }
 
-    /// Searches x and y at a heading in the map frame, in radians, and leaves the intensities of
-    /// all cells in [`Workspace::intensities`]; `None` if `stop` returned true before the end.
-    ///
-    /// # Errors
-    /// If the scan is rejected, see [`Observation::check`], the heading is not finite, or the map
-    /// was prepared for unknown headings.
-    pub fn search_at_in<'w, 's>(
+    fn at_heading<'w>(
         &self,
         workspace: &'w mut Workspace,
-        scan: impl Into<Observation<'s>>,
+        scan: Observation<'_>,
         heading: f64,
         stop: &dyn Fn() -> bool,
     ) -> Result<Option<&'w Outcome>, EngineError> {

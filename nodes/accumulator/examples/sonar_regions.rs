@@ -201,7 +201,7 @@ fn tally(
         let echoes = ring.echoes(&drive[first..=i])?;
         let ranges = reading(&echoes, ring.half_width);
         let scan = regions::scan_of(&ranges);
-        let outcome = vote_search.search_in(&mut workspace, &scan, &|| false)?;
+        let outcome = vote_search.search_in(&mut workspace, &scan, None, &|| false)?;
         let outcome = outcome.expect("a search that nothing stops ends with an outcome");
         let places = distinct(outcome, vote_search.frame(), PLACES).into_iter();
         let is_right: Vec<bool> = places

@@ -25,9 +25,7 @@ pub fn ask(
 ) -> Result<Option<usize>, EngineError> {
     workspaces.resize_with(maps.len(), Workspace::default);
     if let ([map], [workspace]) = (maps, &mut workspaces[..]) {
-        let found = map
-            .vote_search
-            .search_with(workspace, scan, heading, stop)?;
+        let found = map.vote_search.search_in(workspace, scan, heading, stop)?;
         return Ok(found.map(|_| 0));
     }
     let searches = maps.iter().map(|map| &map.vote_search);

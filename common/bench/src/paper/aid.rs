@@ -135,7 +135,7 @@ impl Bench {
         let (outcome, votes_ms) = cpu_ms(|| {
             let found = self
                 .vote_search
-                .search_in(&mut workspace, &scan.scan(), &|| false);
+                .search_in(&mut workspace, &scan.scan(), None, &|| false);
             found.map(Option::<&Outcome>::cloned)
         });
         let outcome = outcome?.unwrap_or_default();

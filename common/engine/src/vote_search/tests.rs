@@ -128,17 +128,13 @@ fn said(all: &mut All, grid: &Grid, scan: &AnyScan, heading: Option<f64>) -> Opt
     let mut text = String::new();
     match heading {
         None => text += &format!("{:?}", vote_search.block_bounds(workspace, &scan).unwrap()),
-        Some(heading) => {
-            vote_search
-                .search_at_in(workspace, &scan, heading, &|| false)
-                .unwrap();
+        Some(_) => {
+            let found = vote_search.search_in(workspace, &scan, heading, &|| false);
+            found.unwrap();
             text += &format!("{:?}", workspace.intensities());
         }
     }
-    let outcome = match heading {
-        None => vote_search.search_in(workspace, &scan, &|| false),
-        Some(heading) => vote_search.search_at_in(workspace, &scan, heading, &|| false),
-    };
+    let outcome = vote_search.search_in(workspace, &scan, heading, &|| false);
     let outcome = outcome.unwrap().unwrap();
     let beams = &vote_search.config().votes.beams;
     let (input, peaks) = (PeakInput::of(outcome, frame), PeakConfig::default());

@@ -102,7 +102,7 @@ fn at_heading(
     stop: &dyn Fn() -> bool,
 ) -> Result<Option<()>, EngineError> {
     for (map, workspace) in maps.iter_mut() {
-        if map.search_at_in(workspace, scan, heading, stop)?.is_none() {
+        if map.at_heading(workspace, scan, heading, stop)?.is_none() {
             return Ok(None);
         }
     }
