@@ -98,7 +98,7 @@ pub mod testing;
 mod waker;
 
 pub use causes::with_causes;
-pub use clock::{monotonic_ns, wall_ns};
+pub use clock::{monotonic_ns, stamp_now, wall_ns};
 pub use error::TransportError;
 pub use error_limit::ErrorLimit;
 pub use event_loop::{Flow, Wake};

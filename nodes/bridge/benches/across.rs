@@ -13,7 +13,7 @@ use messages::{MapHeader, ScanHeader, Stamp, topic};
 use tests::machine::{ENGINE, LASER, Machine};
 use tests::network::Namespace;
 use tests::world::{World, as_the_graph_has_it};
-use transport::monotonic_ns;
+use transport::stamp_now;
 use transport::testing::{NodeProcess, wait_for, wait_for_health, wait_until, wait_until_ready};
 
 /// Number of times that the recording is played.
@@ -182,11 +182,7 @@ fn scans(laser: &Machine<'_>, world: &World) -> Times {
 }
 
 fn stamp(counter: u64) -> Stamp {
-    Stamp {
-        measured_ns: counter as i64,
-        entered_ns: monotonic_ns(),
-        counter,
-    }
+    stamp_now(counter as i64, counter)
 }
 
 /// Times in milliseconds.

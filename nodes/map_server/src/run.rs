@@ -76,11 +76,7 @@ fn header(grid: &OccupancyGrid, rules: CellRules, name: &str) -> MapHeader {
 
 /// Returns the stamp of a map that is read now; `served` is its counter.
 fn now(served: u64) -> Stamp {
-    Stamp {
-        measured_ns: transport::wall_ns(),
-        entered_ns: transport::monotonic_ns(),
-        counter: served,
-    }
+    transport::stamp_now(transport::wall_ns(), served)
 }
 
 #[cfg(test)]

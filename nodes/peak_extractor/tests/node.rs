@@ -17,7 +17,7 @@ use messages::{
 };
 use tests::drawn_room::{FRAME, MOUNT, ROOM, grid, map_header, occupancy, ranges, scan};
 use transport::testing::{Isolated, NodeProcess, wait_for_health, wait_for_next, wait_for_state};
-use transport::{Graph, Publisher, Subscriber, monotonic_ns};
+use transport::{Graph, Publisher, Subscriber, stamp_now};
 
 struct Searched {
     ranges: Vec<f32>,
@@ -91,11 +91,7 @@ impl World {
         votes: &[Vote],
     ) -> (HypothesesHeader, Vec<Hypothesis>) {
         let counter = self.counter.replace(self.counter.get() + 1);
-        let stamp = Stamp {
-            measured_ns: 17,
-            entered_ns: monotonic_ns(),
-            counter,
-        };
+        let stamp = stamp_now(17, counter);
         let scan = scan(ranges);
         let scan_header = ScanHeader {
             stamp,

@@ -14,7 +14,7 @@ use nix::unistd::Pid;
 use recording::{Kind, Message, Recording};
 use tempfile::TempDir;
 use transport::testing::{Isolated, NodeProcess, wait_for_health};
-use transport::{Graph, Publisher, Subscriber, monotonic_ns};
+use transport::{Graph, Publisher, Subscriber, stamp_now};
 
 const SECOND: i64 = 1_000_000_000;
 const START: i64 = 1_137_772_793 * SECOND;
@@ -109,11 +109,7 @@ impl World {
     }
 
     fn stamp(&self) -> Stamp {
-        Stamp {
-            measured_ns: START + self.sent as i64 * SECOND / 10,
-            entered_ns: monotonic_ns(),
-            counter: self.sent,
-        }
+        stamp_now(START + self.sent as i64 * SECOND / 10, self.sent)
     }
 
     fn wait_for_written(&self, messages: u64) {

@@ -2,7 +2,7 @@
 
 use dashboard::Abilities;
 use messages::{Corner, Pose2, RegionHeader, SaveHeader, Stamp, topic};
-use transport::{Graph, Publisher, TransportError, monotonic_ns};
+use transport::{Graph, Publisher, TransportError, stamp_now};
 
 pub(super) struct Outputs {
     regions: Publisher<topic::Region>,
@@ -53,10 +53,6 @@ impl Outputs {
     fn stamp(&mut self) -> Stamp {
         let counter = self.sent;
         self.sent += 1;
-        Stamp {
-            measured_ns: 0,
-            entered_ns: monotonic_ns(),
-            counter,
-        }
+        stamp_now(0, counter)
     }
 }

@@ -139,11 +139,10 @@ impl Source {
     }
 
     fn play(&self, scene: Scene, counter: u64) -> Result<(), TransportError> {
-        let stamp = Stamp {
-            measured_ns: 1_600_000_000_000_000_000 + i64::try_from(counter).unwrap() * 50_000_000,
-            entered_ns: monotonic_ns(),
+        let stamp = stamp_now(
+            1_600_000_000_000_000_000 + i64::try_from(counter).unwrap() * 50_000_000,
             counter,
-        };
+        );
         match scene {
             Scene::Silent => return Ok(()),
             Scene::Ambiguous => self.answer(stamp, Verdict::Ambiguous)?,

@@ -136,11 +136,7 @@ fn until_both(graph: &Graph, mut drive: impl FnMut(i64)) -> (ScanHeader, Vec<f32
 const START_NS: i64 = 1_700_000_000_000_000_000;
 
 fn stamp(counter: u64) -> Stamp {
-    Stamp {
-        measured_ns: START_NS,
-        entered_ns: monotonic_ns(),
-        counter,
-    }
+    stamp_now(START_NS, counter)
 }
 
 /// Returns the pose of a tracker that is sure of it.

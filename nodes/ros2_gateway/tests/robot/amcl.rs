@@ -10,11 +10,7 @@ use super::*;
 
 /// Returns a stamp of no scan, at milliseconds of the robot's clock.
 fn stamp(ms: i64) -> Stamp {
-    Stamp {
-        measured_ns: 1_700_000_000_000_000_000 + ms * 1_000_000,
-        entered_ns: transport::monotonic_ns(),
-        counter: 0,
-    }
+    transport::stamp_now(1_700_000_000_000_000_000 + ms * 1_000_000, 0)
 }
 
 #[test]

@@ -169,11 +169,7 @@ fn several_lasers_enter_by_their_names_and_mounts() {
 
 fn hypotheses(counter: u64, verdict: Verdict) -> (HypothesesHeader, Vec<Hypothesis>) {
     let header = HypothesesHeader {
-        stamp: Stamp {
-            measured_ns: 1_700_000_000_000_000_000 + counter as i64,
-            entered_ns: transport::monotonic_ns(),
-            counter,
-        },
+        stamp: transport::stamp_now(1_700_000_000_000_000_000 + counter as i64, counter),
         verdict: verdict as u32,
         mount_known: 1,
         ..HypothesesHeader::zeroed()

@@ -17,7 +17,7 @@ use messages::{
 use tests::drawn_map::DrawnMap;
 use tests::drawn_room::{self, FRAME, occupancy};
 use transport::testing::{Isolated, NodeProcess, wait_until_ready};
-use transport::{Flow, Graph, Publisher, Subscriber, TransportError, monotonic_ns};
+use transport::{Flow, Graph, Publisher, Subscriber, TransportError, stamp_now};
 
 /// A hall in which no two places look alike.
 pub(crate) const HALL: [&str; 14] = [
@@ -153,11 +153,10 @@ impl World {
 
     /// Returns a stamp this long after the last scan; the next scan is a second later.
     fn stamp(&self, later_ns: i64) -> Stamp {
-        Stamp {
-            measured_ns: 1_000_000_000 * self.counter.get() as i64 + later_ns,
-            entered_ns: monotonic_ns(),
-            counter: self.counter.get(),
-        }
+        stamp_now(
+            1_000_000_000 * self.counter.get() as i64 + later_ns,
+            self.counter.get(),
+        )
     }
 
     /// Publishes odometry with the robot in this column, this long after the last scan.

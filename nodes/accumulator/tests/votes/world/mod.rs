@@ -6,10 +6,10 @@ use bytemuck::Zeroable;
 use engine::boundary;
 use engine::vote_search::{Prior, VoteSearch, VoteSearchConfig};
 use messages::{
-    BoundaryHeader, FrameName, HealthHeader, NodeState, ScanHeader, Stamp, Vote, VotesHeader, topic,
+    BoundaryHeader, FrameName, HealthHeader, NodeState, ScanHeader, Vote, VotesHeader, topic,
 };
 use tests::drawn_room::{FRAME, MOUNT, grid, map_header, occupancy, scan};
-use transport::{Graph, Publisher, Subscriber, monotonic_ns};
+use transport::{Graph, Publisher, Subscriber, stamp_now};
 
 use transport::testing::{Isolated, NodeProcess, wait_for_health, wait_for_next, wait_for_state};
 
@@ -94,11 +94,7 @@ impl World {
         let counter = self.counter.replace(self.counter.get() + 1);
         let plain = scan(&[]);
         let mut header = ScanHeader {
-            stamp: Stamp {
-                measured_ns: 1_000_000_000 * counter as i64,
-                entered_ns: monotonic_ns(),
-                counter,
-            },
+            stamp: stamp_now(1_000_000_000 * counter as i64, counter),
             angle_min: plain.angle_min,
             angle_increment: plain.angle_increment,
             range_min_m: plain.range_min_m,
