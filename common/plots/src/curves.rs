@@ -116,7 +116,7 @@ fn draw_curve(page: &mut Page, curve: &Curve, (area, (x, y)): (Rect, (Scale, Sca
             bars.add_line((end_x - 4.0 * unit, end_y), (end_x + 4.0 * unit, end_y));
         }
         if is_below(point, y) {
-            beyond.add(Shape::Down.at(at(point.x, low), 4.5 * unit));
+            beyond.add(&Shape::Down.at(at(point.x, low), 4.5 * unit));
         }
     }
     page.scene.stroke(bars, solid);

@@ -93,7 +93,7 @@ fn draw_state(
     let (size, mut marks) = (MARK * unit, Path::default());
     let mut count = 0;
     for pose in stops.filter_map(place) {
-        marks.add(shape.at(view.at((pose.x, pose.y)), size));
+        marks.add(&shape.at(view.at((pose.x, pose.y)), size));
         count += 1;
     }
     if count > 0 {

@@ -140,14 +140,14 @@ fn draw_marks(
     for (at, shape) in marks {
         let size = MARK * page.unit;
         match shape {
-            None => filled.add(common.at(at, size)),
+            None => filled.add(&common.at(at, size)),
             Some(Shape::Down) => {
-                outlined.add(Shape::Down.at(at, size));
+                outlined.add(&Shape::Down.at(at, size));
                 let name = format!("below the axis: less than {} m or {}°", LEAST.0, LEAST.1);
                 page.legend.add(BELOW, name);
             }
             Some(other) => {
-                filled.add(other.at(at, size));
+                filled.add(&other.at(at, size));
                 page.legend.add(NOWHERE, "no place, so no error");
             }
         }

@@ -60,7 +60,7 @@ pub(super) fn ends(
 ) {
     let mut path = Path::default();
     for end in ends.filter(|&end| view.shows(end)) {
-        path.add(shape.at(view.at(end), size));
+        path.add(&shape.at(view.at(end), size));
     }
     scene.fill(path, color);
 }
@@ -84,7 +84,7 @@ pub(super) fn arrow_down(scene: &mut Scene, (x, tip): (f64, f64), length: f64, s
         (x, tip),
         (x + barb, tip - 1.5 * barb),
     ];
-    path.add(Path::polyline(barbs));
+    path.add(&Path::polyline(barbs));
     let rim = Stroke::new(Color::WHITE, 2.3 * stroke.width);
     scene.stroke(path.clone(), rim);
     scene.stroke(path, stroke);

@@ -65,7 +65,8 @@ impl Signals {
 
     pub(crate) fn waker(&self) -> Result<Waker, TransportError> {
         let end = self.waker.try_clone();
-        end.map(|end| Waker(end.into())).map_err(TransportError::Signals)
+        end.map(|end| Waker(end.into()))
+            .map_err(TransportError::Signals)
     }
 
     /// Reads what signals and wakers wrote, so that the next wait sleeps; true if there was any.

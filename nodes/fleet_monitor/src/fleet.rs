@@ -113,7 +113,7 @@ impl Fleet {
             member.robot.on_abilities(member.requests.abilities());
             match (member.robot.is_field_viewed(), &member.field) {
                 (true, None) => {
-                    member.field = Some(Feed::open(&self.session, name, graph.waker()?)?)
+                    member.field = Some(Feed::open(&self.session, name, graph.waker()?)?);
                 }
                 (false, Some(_)) => member.field = None,
                 _ => {}

@@ -13,7 +13,7 @@ use engine::vote_search::{Outcome, Prior, VoteSearch, VoteSearchConfig};
 use geometry::Pose;
 use messages::{
     BeamFate, HealthHeader, HypothesesHeader, Hypothesis, MapHeader, NodeState, Pose2, ScanHeader,
-    SearchOutcome, Stamp, Verdict, Vote, VotesHeader, topic,
+    SearchOutcome, Verdict, Vote, VotesHeader, topic,
 };
 use tests::drawn_room::{FRAME, MOUNT, ROOM, grid, map_header, occupancy, ranges, scan};
 use transport::testing::{Isolated, NodeProcess, wait_for_health, wait_for_next, wait_for_state};

@@ -77,12 +77,12 @@ impl Path {
     }
 
     /// Adds the outlines of another path.
-    pub fn add(&mut self, other: Path) {
+    pub fn add(&mut self, other: &Path) {
         self.0.push_str(&other.0);
     }
 
     pub fn add_line(&mut self, from: (f64, f64), to: (f64, f64)) {
-        self.add(Path::line(from, to));
+        self.add(&Path::line(from, to));
     }
 
     pub fn line(from: (f64, f64), to: (f64, f64)) -> Self {
@@ -159,7 +159,7 @@ mod tests {
     fn an_ellipse_begins_and_turns_back_at_the_ends_of_its_first_axis() {
         let mut path = Path::line((0.0, 0.5), (1.234, -2.0));
         let quarter = std::f64::consts::FRAC_PI_2;
-        path.add(Path::ellipse((10.0, 20.0), (4.0, 1.0), quarter));
+        path.add(&Path::ellipse((10.0, 20.0), (4.0, 1.0), quarter));
         let expected = "M0,0.5L1.23,-2M10,24A4,1,90,0,1,10,16A4,1,90,0,1,10,24Z";
         assert_eq!(path.into_data(), expected);
     }

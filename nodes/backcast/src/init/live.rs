@@ -50,10 +50,10 @@ pub(crate) fn record(router: Option<&str>, length: Duration) -> anyhow::Result<R
     if seen.lacks_map {
         say(robot::NO_MAP);
     }
-    record_seen(seen, router, length).context("the robot cannot be recorded")
+    record_seen(&seen, router, length).context("the robot cannot be recorded")
 }
 
-fn record_seen(seen: Robot, router: Option<&str>, length: Duration) -> anyhow::Result<Recorded> {
+fn record_seen(seen: &Robot, router: Option<&str>, length: Duration) -> anyhow::Result<Recorded> {
     if seen.options.is_empty() {
         bail!("none of its nodes publishes laser scans");
     }

@@ -62,7 +62,8 @@ fn what_the_recording_does_not_have_is_refused() {
     let write = Command::Write(Value::OutputRange(range));
     let refused = device.obey(&mut session, &write);
     assert_eq!(refused, Err(Fault::OUT_OF_RANGE));
-    let changes: [(u8, fn(&mut ScanConfig)); 4] = [
+    type Change = fn(&mut ScanConfig);
+    let changes: [(u8, Change); 4] = [
         (1, |config| config.frequency_raw_1e2_hz = 1),
         (2, |config| config.resolution_raw_1e4_deg = 5000),
         (4, |config| config.start_angle_raw_1e4_deg = 0),

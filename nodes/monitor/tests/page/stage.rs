@@ -12,7 +12,7 @@ use messages::{
 use tests::drawn_map::DrawnMap;
 use tests::http::Site;
 use transport::testing::{Isolated, NodeProcess, StoppedAtEnd, wait_until_ready};
-use transport::{Flow, Graph, GraphName, Publisher, TransportError, monotonic_ns};
+use transport::{Flow, Graph, GraphName, Publisher, TransportError, monotonic_ns, stamp_now};
 
 /// Places that fit, as poses of the laser.
 pub(crate) const PLACES: [Pose2; 3] = [place(50.0), place(5.0), place(95.0)];

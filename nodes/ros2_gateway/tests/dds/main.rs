@@ -24,7 +24,7 @@ use tests::needs::Need;
 use tests::robot::Robot;
 use tests::{executables, python};
 use transport::testing::{Isolated, NodeProcess, wait_for, wait_for_next};
-use transport::{Graph, monotonic_ns};
+use transport::{Graph, monotonic_ns, stamp_now};
 
 const LIBRARIES: [&str; 10] = [
     "ros-jazzy-rclpy",

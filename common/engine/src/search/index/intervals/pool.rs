@@ -88,6 +88,10 @@ fn split<const LINES: usize>(
 
 /// Returns the nibble that stands for a width; some widths are rounded up.
 #[inline(always)]
+#[expect(
+    clippy::manual_div_ceil,
+    reason = "compilers make vectors of the sum, not of a remainder"
+)]
 fn nibble(width: u16) -> u16 {
     let mut least = width.min(ALL.into());
     // From each stretch on, the width is the line `step · nibble - lag`.
