@@ -10,7 +10,6 @@ const WITHIN_95: f64 = 2.447_746_830_680_816;
 /// `mobileRobotPosition` of VDA 5050 3.0, `agvPosition` of 2.x, with the field names of the
 /// standard.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-#[serde(rename_all = "camelCase")]
 pub(crate) struct Position {
     /// Position of the robot's base in the map, metres; `None` if it is not localized.
     x: Option<f64>,
@@ -18,12 +17,15 @@ pub(crate) struct Position {
     /// Heading, radians, counter-clockwise.
     theta: Option<f64>,
     /// Map id, 16 hexadecimal digits.
+    #[serde(rename = "mapId")]
     map_id: String,
     /// True if the tracker believes a pose of the robot.
     localized: bool,
     /// Probability of the pose, 0..=1; 0 if the robot is not localized.
+    #[serde(rename = "localizationScore")]
     localization_score: f64,
     /// Radius around x and y that holds the robot with 95 % probability, metres.
+    #[serde(rename = "deviationRange")]
     deviation_range: Option<f64>,
 }
 

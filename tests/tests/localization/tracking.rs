@@ -75,7 +75,11 @@ pub(super) fn by_graph(
         Ok::<_, TransportError>(if is_over { Flow::Stop } else { Flow::Continue })
     });
     outcome.unwrap();
-    assert_eq!(player.exit_code(), Some(0), "the player lost something");
+    match search {
+        "all" => assert_eq!(player.exit_code(), Some(0), "the player lost something"),
+        // It may wait for the answer to a last scan that is not searched.
+        _ => player.stop(),
+    }
     for node in nodes {
         node.stop();
     }
