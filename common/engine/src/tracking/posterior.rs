@@ -1,4 +1,4 @@
-//! Probability that the robot is at a place: its share of all weight.
+//! Probability that the robot is at a place, by its weight and that of the others and "nowhere".
 
 use geometry::Covariance;
 use nalgebra::Matrix3;

@@ -160,11 +160,20 @@ fn average(a: u16, b: u16) -> u16 {
 /// Returns the lower bytes of numbers.
 #[inline(always)]
 fn lower_bytes(numbers: Numbers) -> [u8; COUNT] {
-    std::array::from_fn(|i| numbers[i] as u8)
+    let mut bytes = [0; COUNT];
+    for (byte, number) in bytes.iter_mut().zip(numbers) {
+        *byte = number as u8;
+    }
+    bytes
 }
 
-/// Joins the numbers of each block. `map` of arrays would move them through memory.
+/// Joins the numbers of each block. The functions of arrays are not always inlined, and would then
+/// be compiled without the instructions of this set.
 #[inline(always)]
 fn each(a: Numbers, b: Numbers, join: impl Fn(u16, u16) -> u16) -> Numbers {
-    std::array::from_fn(|i| join(a[i], b[i]))
+    let mut joined = a;
+    for (a, b) in joined.iter_mut().zip(b) {
+        *a = join(*a, b);
+    }
+    joined
 }
