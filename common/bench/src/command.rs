@@ -4,7 +4,7 @@ use std::process::ExitCode;
 
 use command_line::wrong_use;
 use engine::instruction_set::InstructionSet;
-use progress::Progress;
+use offline::Progress;
 
 use super::contest::{self, Effort};
 use super::docs;
@@ -177,7 +177,9 @@ fn name(place: &Place) -> String {
 
 fn printed(rows: &[Row], as_json: bool) -> String {
     if as_json {
-        rows.iter().map(|row| json::object(row) + "\n").collect()
+        rows.iter()
+            .map(|row| command_line::json::object(row) + "\n")
+            .collect()
     } else {
         text::block(rows)
     }

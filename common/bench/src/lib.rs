@@ -30,6 +30,6 @@ pub use distinct::distinct;
 /// Side of a cell of every generated world, in metres.
 pub const RESOLUTION_M: f64 = 0.05;
 
-pub fn schemas() -> Vec<json::schema::Named> {
-    vec![json::schema::of_object::<row::Row>("bench")]
+pub fn schemas() -> Vec<command_line::json::schema::Named> {
+    vec![command_line::json::schema::of_object::<row::Row>("bench")]
 }

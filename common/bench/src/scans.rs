@@ -3,6 +3,7 @@
 
 use std::f64::consts::TAU;
 
+use answers::statistics::SUCCESS;
 use anyhow::anyhow;
 use engine::program::VoteConfig;
 use engine::reference;
@@ -12,7 +13,6 @@ use engine::taper::TaperShape;
 use rand::rngs::Xoshiro256PlusPlus;
 use rand::{RngExt, SeedableRng};
 use rand_distr::{Distribution, StandardNormal};
-use statistics::SUCCESS;
 
 use crate::baselines::Estimate;
 use crate::worlds::World;

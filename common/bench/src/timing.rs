@@ -1,6 +1,6 @@
 //! CPU time of this thread: the cost of a computation, independent of the load of the machine.
 
-use statistics::Distribution;
+use answers::statistics::Distribution;
 
 /// Runs `work` and returns its result, with the CPU time of this thread in milliseconds.
 pub fn cpu_ms<T>(work: impl FnOnce() -> T) -> (T, f64) {

@@ -1,5 +1,7 @@
-//! Common parts of commands and nodes: exit codes, numbers in options, output.
+//! Common parts of commands and nodes: settings and numbers in options, output, JSON, and exit
+//! codes.
 
+pub mod json;
 pub mod names;
 mod number;
 pub mod output;
@@ -8,7 +10,7 @@ pub mod stdout;
 
 pub use number::{number, within};
 
-use std::io;
+use std::io::{self, Write};
 use std::process::ExitCode;
 
 use clap::{Parser, error::ErrorKind};
@@ -55,6 +57,11 @@ pub fn exit_code(error: &anyhow::Error) -> u8 {
         true => WRONG_USE,
         false => FAILED,
     }
+}
+
+/// Writes a remark to standard error; a closed one is ignored.
+pub fn say(remark: &str) {
+    let _ = writeln!(io::stderr().lock(), "backcast: {remark}");
 }
 
 /// Standard output cannot be written.

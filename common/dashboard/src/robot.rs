@@ -90,7 +90,7 @@ impl Known {
     /// Returns the name of the map that is shown, if it is this one of several.
     fn name_of(&self, map_id: u64) -> Option<String> {
         let map = &self.map.as_ref()?.info;
-        let is_named = !map.name.is_empty() && map.map_id == pose_table::map_id(map_id);
+        let is_named = !map.name.is_empty() && map.map_id == answers::map_id(map_id);
         is_named.then(|| map.name.clone())
     }
 }
@@ -256,7 +256,7 @@ impl Robot {
         };
         if let Some(webhook) = self.webhook.get() {
             let before = periods.next();
-            webhook.post(json::object(&StateChange {
+            webhook.post(command_line::json::object(&StateChange {
                 robot: &self.name,
                 graph: self.graph.as_deref(),
                 since_s: wall_ns() as f64 / 1e9 - period.ago_s,
@@ -367,7 +367,7 @@ impl Drop for FieldView {
 }
 
 pub(crate) fn text(message: &Message<'_>) -> Utf8Bytes {
-    json::object(message).into()
+    command_line::json::object(message).into()
 }
 
 #[cfg(test)]

@@ -11,8 +11,8 @@ mod text;
 mod trust;
 mod truths;
 
-pub fn schemas() -> Vec<json::schema::Named> {
-    use json::schema::of_object;
+pub fn schemas() -> Vec<command_line::json::schema::Named> {
+    use command_line::json::schema::of_object;
     use outcomes::TotalLine;
 
     vec![
@@ -24,6 +24,6 @@ pub fn schemas() -> Vec<json::schema::Named> {
         of_object::<TotalLine<'_, sequence::Figures>>("evaluate_sequence_total"),
         of_object::<sequence::StressFigures>("evaluate_stress"),
         of_object::<regression::Object<'_>>("regress"),
-        json::schema::of_file::<regression::Expectation>("expected"),
+        command_line::json::schema::of_file::<regression::Expectation>("expected"),
     ]
 }

@@ -41,7 +41,7 @@ pub(crate) struct TotalLine<'a, T> {
 }
 
 pub(crate) fn total_line(total: &impl Serialize) -> String {
-    json::object(&TotalLine { total }) + "\n"
+    command_line::json::object(&TotalLine { total }) + "\n"
 }
 
 pub(crate) struct Outcomes {

@@ -9,11 +9,11 @@ pub mod run;
 
 pub use installed::node;
 
-pub fn schemas() -> Vec<json::schema::Named> {
-    use json::schema::of_object;
+pub fn schemas() -> Vec<command_line::json::schema::Named> {
+    use command_line::json::schema::of_object;
 
     vec![
-        of_object::<pose_table::Row>("run"),
+        of_object::<answers::Row>("run"),
         of_object::<run::SummaryLine<'_>>("run_summary"),
         of_object::<run::control::Status>("status"),
         of_object::<control::LogLine>("logs"),

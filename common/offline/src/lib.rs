@@ -2,7 +2,8 @@
 //! `locate`, `evaluate` and `plot`.
 //!
 //! It uses the engine of the graph with the same settings, so the votes are exactly equal. This
-//! crate reads files and measures times; printing is left to the commands.
+//! crate reads files and measures times; printing is left to the commands, but for their progress
+//! bar.
 
 mod accepted;
 pub mod cpu;
@@ -12,6 +13,7 @@ mod layout;
 mod maps;
 mod motion;
 mod options;
+mod progress;
 mod scans;
 mod session;
 mod topics;
@@ -23,6 +25,7 @@ pub use heading::each_odometry;
 pub use layout::{check_map, frame_of, sides_of};
 pub use maps::map_in;
 pub use options::{EngineOptions, NamedMap, Options};
+pub use progress::Progress;
 pub use scans::{Scans, TakenScan, as_measured};
 pub use session::{Reply, Session, View};
 pub use topics::TopicOptions;

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use command_line::wrong_use;
+use command_line::{say, wrong_use};
 use engine::directions::Directions;
 use engine::grid::CellRules;
 use engine::heading::HeadingConfig;
@@ -11,7 +11,6 @@ use engine::peaks::PeakConfig;
 use engine::vote_search::VoteSearchConfig;
 use index_cache::IndexCacheConfig;
 use map::OccupancyGrid;
-use progress::say;
 use recording::{Kind, Recording};
 
 use super::maps::map_in;

@@ -7,7 +7,7 @@ use std::process::ExitCode;
 
 use crate::drawing::Scene;
 use anyhow::{Context, anyhow, bail};
-use command_line::{output, stdout, wrong_use};
+use command_line::{output, say, stdout, wrong_use};
 use engine::EngineError;
 use engine::grid::Grid;
 use engine::heading::HeadingError;
@@ -16,8 +16,9 @@ use engine::vote_search::Prior;
 use geometry::Pose;
 use map::OccupancyGrid;
 use messages::Verdict;
-use offline::{Field, NoUsableMap, Session, TakenScan, World, map_in, no_truth_taken, no_truths};
-use progress::{Progress, say};
+use offline::{
+    Field, NoUsableMap, Progress, Session, TakenScan, World, map_in, no_truth_taken, no_truths,
+};
 use recording::{GroundTruth, Recording, RecordingError};
 
 use super::config::{Config, Format, Kind};

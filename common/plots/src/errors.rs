@@ -1,8 +1,8 @@
 //! Picture of a drive: how far off the best place of each scan is, and its verdict.
 
 use crate::drawing::{Path, Rect, Scene, Stroke};
+use answers::statistics::SUCCESS;
 use messages::Verdict;
-use statistics::SUCCESS;
 
 use super::axes::{self, Axis};
 use super::legend::{Legend, Sample};

@@ -1,10 +1,10 @@
 //! Subject of a picture: a scan, its possible places, and the truth.
 
+use answers::statistics::SUCCESS;
 use engine::EngineError;
 use engine::peaks::{Place, Places};
 use geometry::Pose;
 use offline::{BeamEnd, ScanAt, TakenScan, World};
-use statistics::SUCCESS;
 
 use super::extent::Extent;
 use super::ground::Ground;

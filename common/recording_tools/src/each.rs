@@ -2,9 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
-use command_line::{OutputError, stdout};
+use command_line::{OutputError, say, stdout};
 use offline::TopicOptions;
-use progress::say;
 use recording::Recording;
 
 /// Opens each recording with these topics, and prints the report on it. If there are several, an

@@ -9,9 +9,9 @@ mod messages;
 pub mod simulate;
 
 /// Schemas of what the commands print.
-pub fn schemas() -> Vec<json::schema::Named> {
+pub fn schemas() -> Vec<command_line::json::schema::Named> {
     vec![
-        json::schema::of_object::<info::Contents>("info"),
-        json::schema::of_object::<doctor::Report>("doctor"),
+        command_line::json::schema::of_object::<info::Contents>("info"),
+        command_line::json::schema::of_object::<doctor::Report>("doctor"),
     ]
 }

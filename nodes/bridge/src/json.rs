@@ -2,8 +2,8 @@
 
 use std::borrow::Cow;
 
+use answers::TrackedPose;
 use messages::{HealthHeader, NodeState, PoseHeader};
-use pose_table::TrackedPose;
 use serde::Serialize;
 
 #[derive(Debug, Serialize)]
@@ -18,11 +18,11 @@ struct Health<'a> {
 }
 
 pub(crate) fn pose(header: &PoseHeader, words: &[u8]) -> String {
-    json::object(&TrackedPose::new(header, words))
+    command_line::json::object(&TrackedPose::new(header, words))
 }
 
 pub(crate) fn health(header: &HealthHeader, error: &[u8]) -> String {
-    json::object(&Health {
+    command_line::json::object(&Health {
         node: Cow::Borrowed(header.node.as_str()),
         state: NodeState::from_code(header.state).map_or("?", NodeState::as_str),
         received: header.received,

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::{ArgGroup, Parser};
 use command_line::number;
-use replay::Rate;
+use ros_graph::replay::Rate;
 use sick::cola::{Encoding, KnownDevice};
 use sick::lms2xx::Baud;
 

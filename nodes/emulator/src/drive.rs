@@ -7,7 +7,7 @@ use std::path::Path;
 
 use messages::{GroundTruth, Odometry, Stamp};
 use recording::{Kind, Recording};
-use replay::{Channels, Content, InOrder, PlaybackError, Selection, Source, Timed};
+use ros_graph::replay::{Channels, Content, InOrder, PlaybackError, Selection, Source, Timed};
 
 use crate::EmulatorError;
 use crate::sweep::Sweep;

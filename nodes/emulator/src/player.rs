@@ -5,7 +5,7 @@
 //! answer belongs to the last scan if its scan entered the graph after that one was sent.
 
 use messages::Stamp;
-use replay::{Action, Rate, Schedule};
+use ros_graph::replay::{Action, Rate, Schedule};
 
 use crate::drive::Happening;
 

@@ -10,7 +10,7 @@ use std::time::Duration;
 
 use command_line::finished;
 use messages::{NodeState, topic};
-use replay::{Awaited, Poses};
+use ros_graph::replay::{Awaited, Poses};
 use transport::{Graph, Health, Subscriber, TransportError, monotonic_ns, with_causes};
 
 use crate::cola_device::Model;

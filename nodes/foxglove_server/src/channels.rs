@@ -8,7 +8,7 @@ use foxglove::websocket::{ChannelView, Client, ServerListener};
 use foxglove::{Context, PartialMetadata, RawChannel, Schema};
 use recording::write::Encoded;
 use ros::{OccupancyGridMsg, RosMessage};
-use ros_export::topics;
+use ros_graph::export::topics;
 
 use crate::ServerError;
 use crate::serving::Serving;

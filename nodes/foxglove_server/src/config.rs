@@ -22,7 +22,7 @@ pub struct Config {
     pub robot: String,
 
     #[command(flatten)]
-    pub transcript: ros_export::Options,
+    pub transcript: ros_graph::export::Options,
 }
 
 #[cfg(test)]

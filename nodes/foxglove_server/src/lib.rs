@@ -1,7 +1,7 @@
 //! Node `foxglove_server`: shows a graph live to any viewer with Foxglove's WebSocket protocol, as
 //! messages of ROS 2.
 //!
-//! `ros_export` converts the messages, as for recordings; the `foxglove` crate implements the
+//! `ros_graph::export` converts the messages, as for recordings; the `foxglove` crate implements the
 //! protocol. The graph never waits for viewers: a slow one loses messages.
 
 mod channels;

@@ -5,7 +5,7 @@ use std::time::Duration;
 
 use foxglove::Context;
 use messages::{NodeState, topic};
-use ros_export::{Entry, Inputs, Listener, Transcript};
+use ros_graph::export::{Entry, Inputs, Listener, Transcript};
 use transport::{Flow, Graph, Subscriber};
 
 use crate::channels::Channels;

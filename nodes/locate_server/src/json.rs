@@ -1,9 +1,9 @@
 //! JSON form of requests and answers, for programs without the message types.
 
+use answers::{Candidate, ScanAnswer};
 use bytemuck::Zeroable;
 use geometry::Pose;
 use messages::{FrameName, HypothesesHeader, Hypothesis, Pose2, ScanHeader, Stamp};
-use pose_table::{Candidate, ScanAnswer};
 use serde::{Deserialize, Serialize};
 
 /// Scan with defaults for optional fields.

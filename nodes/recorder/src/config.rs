@@ -74,7 +74,7 @@ pub struct Config {
     pub field: bool,
 
     #[command(flatten)]
-    pub transcript: ros_export::Options,
+    pub transcript: ros_graph::export::Options,
 
     /// Limit of the queue for a slow or full disk, megabytes (10^6 bytes); further
     /// messages are dropped and counted

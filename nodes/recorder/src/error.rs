@@ -13,7 +13,7 @@ pub enum RecorderError {
     #[error("{} and {tried} files with a number behind its name exist already", path.display())]
     NoFreeName { path: PathBuf, tried: u32 },
     #[error(transparent)]
-    Sample(#[from] ros_export::TranscriptError),
+    Sample(#[from] ros_graph::export::TranscriptError),
     #[error(transparent)]
     Recording(#[from] RecordingError),
     #[error("cannot catch SIGUSR1")]

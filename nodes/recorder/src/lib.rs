@@ -1,7 +1,7 @@
 //! Node `recorder`: writes the messages of the graph to an MCAP recording that the tools of ROS 2
 //! can open.
 //!
-//! `ros_export` converts the messages.
+//! `ros_graph::export` converts the messages.
 //!
 //! | file | content |
 //! |---|---|

@@ -11,7 +11,7 @@ use std::time::Duration;
 use command_line::finished;
 use messages::{HealthHeader, NodeState, topic};
 use nix::time::{ClockId, clock_gettime};
-use ros_export::{Inputs, Listener, Transcript};
+use ros_graph::export::{Inputs, Listener, Transcript};
 use signal_hook::consts::SIGUSR1;
 use transport::{Flow, Graph, Input, Subscriber, wall_ns};
 use writer::{Status, Writer};

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::Parser;
 use command_line::number;
 use messages::Name;
-use replay::{Rate, Remap};
+use ros_graph::replay::{Rate, Remap};
 
 /// Plays a recording into the graph: scans, odometry and ground truth.
 ///

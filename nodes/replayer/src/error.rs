@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use recording::RecordingError;
-use replay::PlaybackError;
+use ros_graph::replay::PlaybackError;
 
 #[derive(Debug, thiserror::Error)]
 pub enum ReplayerError {

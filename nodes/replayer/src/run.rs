@@ -15,7 +15,7 @@ use keyboard::{KeyPress, Keyboard};
 use messages::{NodeState, topic};
 use outlet::{Outlet, Tally};
 use recording::{Kind, Recording};
-use replay::{
+use ros_graph::replay::{
     Action, Channels, InOrder, PlaybackError, Rate, Schedule, Selection, Source, Timed,
     wait_for_nodes,
 };

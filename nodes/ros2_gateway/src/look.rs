@@ -66,7 +66,9 @@ pub(crate) fn look(graph: &Graph, config: &Config, seconds: f64) -> Result<(), G
             Err(error) => tracing::warn!("{}", transport::with_causes(&error)),
         }
     }
-    let lines = found.iter().map(|found| json::object(found) + "\n");
+    let lines = found
+        .iter()
+        .map(|found| command_line::json::object(found) + "\n");
     Ok(stdout::print(&lines.collect::<String>())?)
 }
 

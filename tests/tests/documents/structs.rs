@@ -100,9 +100,9 @@ fn every_message_has_its_table() {
 /// are sent as one object.
 #[rustfmt::skip]
 const JSON: &[(&str, &[(&str, &str)])] = &[
-    ("A place", &[("common/pose_table/src/place.rs", "Place"), ("common/pose_table/src/place.rs", "Candidate")]),
-    ("The answer to a scan", &[("common/pose_table/src/answer.rs", "ScanAnswer")]),
-    ("The tracker's pose", &[("common/pose_table/src/tracked.rs", "TrackedPose")]),
+    ("A place", &[("common/answers/src/place.rs", "Place"), ("common/answers/src/place.rs", "Candidate")]),
+    ("The answer to a scan", &[("common/answers/src/answer.rs", "ScanAnswer")]),
+    ("The tracker's pose", &[("common/answers/src/tracked.rs", "TrackedPose")]),
     ("`locate_server`", &[("nodes/locate_server/src/json.rs", "Answer")]),
     ("`health/json`", &[("nodes/bridge/src/json.rs", "Health")]),
     ("`backcast locate --json`", &[("common/evaluation/src/locate/object.rs", "Object")]),
@@ -115,8 +115,8 @@ const JSON: &[(&str, &[(&str, &str)])] = &[
     ("Answers of another program", &[("common/evaluation/src/evaluate/given.rs", "Line")]),
     ("`backcast evaluate --sequence --json`", &[("common/evaluation/src/sequence/figures.rs", "Figures")]),
     ("`backcast evaluate --sequence --stress --json`", &[("common/evaluation/src/sequence/stress/figures.rs", "Figures")]),
-    ("Of a scan", &[("common/pose_table/src/tracked.rs", "Row")]),
-    ("Of the run", &[("common/launcher/src/run/summary.rs", "Summary"), ("common/statistics/src/lib.rs", "Figures")]),
+    ("Of a scan", &[("common/answers/src/tracked.rs", "Row")]),
+    ("Of the run", &[("common/launcher/src/run/summary.rs", "Summary"), ("common/answers/src/statistics.rs", "Figures")]),
     ("`backcast regress --json`", &[("common/evaluation/src/regression/outcome.rs", "Object")]),
     ("`backcast status --json`", &[("common/launcher/src/run/control.rs", "Status")]),
     ("A node of a graph", &[("common/launcher/src/run/control.rs", "NodeStatus")]),

@@ -6,7 +6,7 @@ use std::process::Command;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use anyhow::{Context, anyhow, bail};
-use progress::Progress;
+use offline::Progress;
 use serde_json::Value;
 
 /// Lines of JSON that a command printed.

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use clap::ValueEnum;
-use progress::Progress;
+use offline::Progress;
 
 use super::super::contest::Effort;
 use super::super::scope::{Table, name_of};

@@ -15,7 +15,7 @@ use super::{Refusal, Site};
 
 pub(super) async fn robots(State(site): State<Arc<Site>>) -> Json<Value> {
     Json(json!({
-        "schema": json::SCHEMA,
+        "schema": command_line::json::SCHEMA,
         "version": env!("CARGO_PKG_VERSION"),
         "robots": site.robots.names(),
     }))

@@ -32,7 +32,7 @@ impl IntoResponse for Refusal {
     fn into_response(self) -> Response {
         (
             self.status,
-            Json(json!({ "schema": json::SCHEMA, "error": self.problem })),
+            Json(json!({ "schema": command_line::json::SCHEMA, "error": self.problem })),
         )
             .into_response()
     }

@@ -1,7 +1,7 @@
 //! Result of one scan: verdict and hypotheses.
 
+use answers::{Candidate, ScanAnswer};
 use messages::{HypothesesHeader, Hypothesis};
-use pose_table::{Candidate, ScanAnswer};
 use serde::Serialize;
 
 use super::ms;

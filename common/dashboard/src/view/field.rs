@@ -36,7 +36,7 @@ pub(crate) fn frame(header: &FieldHeader, items: &[u16]) -> Option<Vec<u8>> {
     }
     let factor = (1..).find(|f| width.div_ceil(*f) * height.div_ceil(*f) <= MAX_PIXELS)?;
     let head = Head {
-        schema: json::SCHEMA,
+        schema: command_line::json::SCHEMA,
         kind_of_message: "field",
         counter: header.stamp.counter,
         map_id: format!("{:016x}", header.map_id),

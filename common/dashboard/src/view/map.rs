@@ -3,10 +3,10 @@
 use std::io::Write;
 use std::sync::OnceLock;
 
+use answers::map_id;
 use flate2::Compression;
 use flate2::write::GzEncoder;
 use messages::{MapHeader, Pose2};
-use pose_table::map_id;
 use serde::Serialize;
 
 /// Description of a map; the cells are requested separately.

@@ -1,8 +1,8 @@
 //! Pose of the tracker.
 
+use answers::TrackedPose;
 use engine::tracking::Report;
 use messages::PoseHeader;
-use pose_table::TrackedPose;
 use serde::Serialize;
 
 use super::ms;

@@ -3,13 +3,13 @@
 
 use std::path::{Path, PathBuf};
 
+use answers::statistics::Spread;
 use anyhow::{Context, anyhow};
 use clap::Arg;
 use command_line::number;
 use offline::{Options, Scans, no_truth_taken};
 use schemars::JsonSchema;
 use serde::Serialize;
-use statistics::Spread;
 
 use super::given::{GivenPoses, seconds};
 use super::judge::{Evaluation, Judged};

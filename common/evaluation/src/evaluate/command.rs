@@ -5,10 +5,9 @@ use std::process::ExitCode;
 use std::slice;
 
 use anyhow::Context;
-use command_line::{number, stdout, wrong_use};
+use command_line::{number, say, stdout, wrong_use};
 use map::OccupancyGrid;
-use offline::{Accepted, Options, Session, World, no_truth_taken};
-use progress::{Progress, say};
+use offline::{Accepted, Options, Progress, Session, World, no_truth_taken};
 
 use super::answers::{self, AnswerOptions};
 use super::judge::{Evaluation, Judged, Total, complaint};
@@ -119,7 +118,7 @@ pub fn run(config: &Config) -> anyhow::Result<ExitCode> {
             outcomes.judged(&name, None, &config.missed(&evaluation), say);
         }
         stdout::print(&match json {
-            true => json::object(&evaluation) + "\n",
+            true => command_line::json::object(&evaluation) + "\n",
             false if total.files.len() == 1 => table.header() + &table.row(&evaluation),
             false => table.row(&evaluation),
         })?;
@@ -160,7 +159,7 @@ fn judge_answers(file: &Path, config: &Config) -> anyhow::Result<ExitCode> {
     match answers::evaluate(file, bag, options) {
         Ok((figures, reached)) => {
             stdout::print(&match config.report.json {
-                true => json::object(&figures) + "\n",
+                true => command_line::json::object(&figures) + "\n",
                 false => figures.text(),
             })?;
             let missed = config.missed(&reached);

@@ -1,11 +1,11 @@
 //! Computes the figures of one file from results and true poses. Pure.
 
+use answers::statistics::{Accuracy, Distribution, SUCCESS, Spread};
 use engine::peaks::Places;
 use geometry::Pose;
 use messages::Verdict;
 use schemars::JsonSchema;
 use serde::Serialize;
-use statistics::{Accuracy, Distribution, SUCCESS, Spread};
 
 use super::given::GivenPose;
 use crate::trust::{Said, Trust};
@@ -13,7 +13,7 @@ use crate::trust::{Said, Trust};
 /// Result for a scan with a true pose.
 pub(super) struct Judged {
     truth: Pose,
-    answer: statistics::Answer,
+    answer: answers::statistics::Answer,
     /// Probability of the best place, if it is known.
     probability: Option<f64>,
     /// CPU time of the search in milliseconds, if there was one.
@@ -104,11 +104,12 @@ impl Judged {
     pub(super) fn answer(truth: Pose, found: &Places, cpu_ms: f64) -> Self {
         let poses = found.places.iter().map(|place| place.map_from_laser);
         let best = found.places.first();
-        let is_held =
-            best.is_some_and(|best| statistics::holds(best.covariance, best.map_from_laser, truth));
+        let is_held = best.is_some_and(|best| {
+            answers::statistics::holds(best.covariance, best.map_from_laser, truth)
+        });
         Judged {
             truth,
-            answer: statistics::Answer {
+            answer: answers::statistics::Answer {
                 poses: poses.collect(),
                 verdict: Some(found.verdict),
             },
@@ -126,7 +127,7 @@ impl Judged {
         };
         Judged {
             truth,
-            answer: statistics::Answer {
+            answer: answers::statistics::Answer {
                 poses: vec![pose],
                 verdict: Some(verdict),
             },
@@ -140,7 +141,7 @@ impl Judged {
     pub(super) fn refusal(truth: Pose, reason: String) -> Self {
         Judged {
             truth,
-            answer: statistics::Answer {
+            answer: answers::statistics::Answer {
                 poses: Vec::new(),
                 verdict: None,
             },

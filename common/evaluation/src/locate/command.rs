@@ -3,10 +3,9 @@
 use std::path::PathBuf;
 use std::process::ExitCode;
 
+use answers::ScanAnswer;
 use command_line::{LOST_DATA, wrong_use};
-use offline::{Accepted, Options, Session};
-use pose_table::ScanAnswer;
-use progress::Progress;
+use offline::{Accepted, Options, Progress, Session};
 use recording::RecordingError;
 
 use super::object::Object;
@@ -84,7 +83,7 @@ pub fn run(config: &Config) -> anyhow::Result<ExitCode> {
                 let object = Object::new(&scan, &reply).with(particles);
                 let of = object.frame();
                 let line = match config.json {
-                    true => json::object(&object),
+                    true => command_line::json::object(&object),
                     false if frame.replace(of) == Some(of) => object.text(),
                     false => format!("{}\n{}", ScanAnswer::header(of), object.text()),
                 };

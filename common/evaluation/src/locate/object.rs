@@ -2,12 +2,12 @@
 
 use std::iter;
 
+use answers::{Candidate, Frame, Place, ScanAnswer, map_id};
 use engine::fit::BeamClass;
 use engine::vote_search::Outcome;
 use geometry::Pose;
 use messages::Verdict;
 use offline::{Answer, Reply, TakenScan};
-use pose_table::{Candidate, Frame, Place, ScanAnswer, map_id};
 use schemars::JsonSchema;
 use serde::Serialize;
 

@@ -30,10 +30,10 @@ pub(super) struct ParticlesOptions {
 #[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub(super) struct Particles {
     /// Poses of the laser; `None` if its mount is known.
-    #[schemars(with = "Option<Vec<json::schema::Pose>>")]
+    #[schemars(with = "Option<Vec<command_line::json::schema::Pose>>")]
     laser: Option<Vec<Pose>>,
     /// Poses of the base; `None` if the laser's mount is not known.
-    #[schemars(with = "Option<Vec<json::schema::Pose>>")]
+    #[schemars(with = "Option<Vec<command_line::json::schema::Pose>>")]
     base: Option<Vec<Pose>>,
 }
 

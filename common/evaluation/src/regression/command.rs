@@ -5,10 +5,9 @@ use std::process::ExitCode;
 use std::time::Instant;
 
 use anyhow::anyhow;
-use command_line::{output, stdout, wrong_use};
+use command_line::{output, say, stdout, wrong_use};
 use launcher::descriptor::{self, Builds, DEFAULT_FILE};
 use launcher::run::build;
-use progress::say;
 use transport::GraphName;
 
 use super::case::{self, Case};
@@ -88,7 +87,7 @@ pub fn run(config: &Config) -> anyhow::Result<ExitCode> {
     for case in &cases {
         let outcome = replay(config, case);
         stdout::print(&match config.json {
-            true => json::object(&Object::of(&outcome, config.accept)) + "\n",
+            true => command_line::json::object(&Object::of(&outcome, config.accept)) + "\n",
             false => text(&outcome, config.accept),
         })?;
         outcomes.push(outcome);

@@ -2,11 +2,11 @@
 
 use std::collections::BTreeMap;
 
+use answers::statistics::SUCCESS;
 use geometry::Pose;
 use schemars::JsonSchema;
 use serde::Serialize;
 use serde_json::{Map, Value};
-use statistics::SUCCESS;
 
 use super::answer::{Answer, Expected};
 

@@ -2,10 +2,9 @@
 
 use std::path::Path;
 
-use command_line::{names, stdout};
-use offline::{Accepted, Options, Session, no_truth_taken};
+use command_line::{names, say, stdout};
+use offline::{Accepted, Options, Progress, Session, no_truth_taken};
 use plots::draw_drive;
-use progress::{Progress, say};
 
 use super::drive::Moment;
 use super::errors::Samples;
@@ -42,7 +41,7 @@ pub(crate) fn evaluate(task: &Task<'_>, outcomes: &mut Outcomes) -> anyhow::Resu
         drives += 1;
         let figures = Figures::of(name.clone(), &judged);
         stdout::print(&match task.report.json {
-            true => json::object(&figures) + "\n",
+            true => command_line::json::object(&figures) + "\n",
             false => figures.text(),
         })?;
         if !task.report.total {

@@ -8,8 +8,7 @@ use engine::joined::ByOdometry;
 use engine::peaks::Target;
 use engine::tracking::Candidate;
 use geometry::{Pose, wrap_angle};
-use offline::{Accepted, Session, TakenScan, View};
-use progress::Progress;
+use offline::{Accepted, Progress, Session, TakenScan, View};
 
 use crate::truths::Truths;
 

@@ -1,8 +1,8 @@
 //! Figures of one drive.
 
+use answers::statistics::{Distribution, Spread};
 use schemars::JsonSchema;
 use serde::Serialize;
-use statistics::{Distribution, Spread};
 
 use super::errors::{Errors, Samples};
 use super::follow::Followed;

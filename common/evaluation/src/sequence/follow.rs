@@ -157,5 +157,5 @@ fn is_in_ellipse(moment: &Moment, said: &Said) -> bool {
         return false;
     };
     let covariance = said.report.covariance.carried(target, laser);
-    statistics::holds(covariance, laser, truth)
+    answers::statistics::holds(covariance, laser, truth)
 }

@@ -60,7 +60,7 @@ impl Tally {
 
 /// Limits in metres and degrees: an error above `WRONG` is wrong, one up to `RIGHT` is right.
 pub(crate) const WRONG: (f64, f64) = (1.0, 25.0);
-pub(super) const RIGHT: (f64, f64) = statistics::SUCCESS;
+pub(super) const RIGHT: (f64, f64) = answers::statistics::SUCCESS;
 
 impl Said {
     pub(super) fn is_unique(&self) -> bool {

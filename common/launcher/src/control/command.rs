@@ -71,7 +71,7 @@ pub fn status(config: &StatusConfig) -> anyhow::Result<ExitCode> {
     for graph in &graphs {
         let status = status_of(graph)?;
         print(&match config.json {
-            true => json::object(&status) + "\n",
+            true => command_line::json::object(&status) + "\n",
             false => text::status(&status),
         })?;
     }

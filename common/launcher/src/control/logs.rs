@@ -116,7 +116,7 @@ impl LogLine {
     }
 
     pub fn json(&self) -> String {
-        json::object(self) + "\n"
+        command_line::json::object(self) + "\n"
     }
 
     fn text(&self) -> String {

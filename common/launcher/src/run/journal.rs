@@ -2,8 +2,8 @@
 
 use std::time::Duration;
 
+use answers::{Frame, Row, Rows, ScanAnswer};
 use messages::{HypothesesHeader, Hypothesis, LogHeader, PoseHeader};
-use pose_table::{Frame, Row, Rows, ScanAnswer};
 use schemars::JsonSchema;
 use serde::Serialize;
 
@@ -130,7 +130,7 @@ impl Journal {
 
 fn shown<T: Serialize>(json: bool, value: &T, text: impl Fn(&T) -> String) -> String {
     match json {
-        true => json::object(value),
+        true => command_line::json::object(value),
         false => text(value),
     }
 }

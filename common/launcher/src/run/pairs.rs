@@ -2,8 +2,8 @@
 
 use std::collections::VecDeque;
 
+use answers::statistics::{Accuracy, Answer, Figures};
 use geometry::Pose;
-use statistics::{Accuracy, Answer, Figures};
 
 /// Largest number of waiting entries on each side, as a counterpart may never come.
 const CAPACITY: usize = 256;

@@ -2,11 +2,11 @@
 
 use std::collections::HashMap;
 
+use answers::statistics::{Answer, Distribution};
+use answers::{ScanAnswer, TrackedPose};
 use messages::{
     GroundTruth, HealthHeader, HypothesesHeader, Hypothesis, MapSet, PoseHeader, Stamp, Verdict,
 };
-use pose_table::{ScanAnswer, TrackedPose};
-use statistics::{Answer, Distribution};
 
 use super::{pairs::Pairs, summary::Summary, tracking::Tracking};
 
@@ -159,7 +159,7 @@ mod tests {
     use bytemuck::Zeroable;
     use messages::{Pose2, TrackState};
 
-    use pose_table::testing::{message, pose};
+    use answers::testing::{message, pose};
 
     use super::*;
 

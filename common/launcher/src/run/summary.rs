@@ -1,10 +1,10 @@
 //! Summary that is printed when a run is over. Pure.
 
+use answers::number;
+use answers::statistics::{CLOSE_SUCCESS, Figures, SUCCESS, Tail};
 use messages::TrackState;
-use pose_table::number;
 use schemars::JsonSchema;
 use serde::Serialize;
-use statistics::{CLOSE_SUCCESS, Figures, SUCCESS, Tail};
 
 use super::tracking::TrackingFigures;
 
@@ -126,7 +126,7 @@ mod tests {
     use geometry::Pose;
 
     use super::*;
-    use statistics::{Accuracy, Answer};
+    use answers::statistics::{Accuracy, Answer};
 
     fn summary(accuracy: &Accuracy) -> Summary {
         let tail = |ms| Tail {

@@ -2,11 +2,11 @@
 
 use std::collections::BTreeMap;
 
+use answers::statistics::{Answer, Distribution, Figures, Tail};
 use geometry::Pose;
 use messages::{PoseHeader, TrackState, Verdict};
 use schemars::JsonSchema;
 use serde::Serialize;
-use statistics::{Answer, Distribution, Figures, Tail};
 
 use super::pairs::Pairs;
 
@@ -78,7 +78,7 @@ impl Tracking {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use pose_table::testing::pose;
+    use answers::testing::pose;
 
     #[test]
     fn states_are_counted_and_poses_meet_their_truths() {

@@ -7,8 +7,7 @@ use std::process::ExitCode;
 use std::thread;
 
 use anyhow::bail;
-use command_line::{finished, output, wrong_use};
-use progress::say;
+use command_line::{finished, output, say, wrong_use};
 use recording::write::{Packing, RecordingWriter};
 use recording::{Kind, Recording, is_bag, is_stream};
 use signal_hook::consts::{SIGINT, SIGTERM};

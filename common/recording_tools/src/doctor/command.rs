@@ -111,7 +111,7 @@ fn examine(config: &Config, recordings: &[PathBuf], known: &[Finding]) -> anyhow
             findings,
         };
         Ok(match config.json {
-            true => json::object(&report) + "\n",
+            true => command_line::json::object(&report) + "\n",
             false => text(&report),
         })
     })?;

@@ -34,7 +34,7 @@ pub fn run(config: &Config) -> anyhow::Result<ExitCode> {
             code = ExitCode::from(LOST_DATA);
         }
         Ok(match config.json {
-            true => json::object(&contents) + "\n",
+            true => command_line::json::object(&contents) + "\n",
             false => text::of(&contents),
         })
     })?;

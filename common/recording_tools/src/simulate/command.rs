@@ -3,8 +3,8 @@
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-use command_line::{output, stdout};
-use progress::{Progress, say};
+use command_line::{output, say, stdout};
+use offline::Progress;
 use recording::write::{Packing, RecordingWriter};
 use recording::{GROUND_TRUTH, MAP, ODOM, TF_STATIC};
 use ros::{PointCloud2, RosMessage, Time};

@@ -9,10 +9,9 @@ use std::process::ExitCode;
 
 use anyhow::Context;
 use clap::ArgGroup;
-use command_line::{output, stdout, wrong_use};
+use command_line::{output, say, stdout, wrong_use};
 use geometry::Mount;
 use launcher::descriptor::{self, Builds};
-use progress::say;
 use recording::{Kind, Recording};
 
 use crate::init::descriptor::{Served, Source, descriptor_of};

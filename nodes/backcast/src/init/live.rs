@@ -7,10 +7,10 @@ use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
 
 use anyhow::{Context, bail};
+use command_line::say;
 use messages::topic;
 use nix::sys::signal::{Signal, kill};
 use nix::unistd::Pid;
-use progress::say;
 use serde::Deserialize;
 use transport::node::LOG_FORMAT_VARIABLE;
 use transport::{Flow, Graph, GraphName, TransportError, control_socket, with_causes};

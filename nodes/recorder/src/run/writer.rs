@@ -6,7 +6,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
-use ros_export::Entry;
+use ros_graph::export::Entry;
 use transport::with_causes;
 
 use crate::writing::{BlackBox, Limits, Parts, Preamble, Room, Store, Tally};

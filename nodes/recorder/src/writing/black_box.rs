@@ -10,7 +10,7 @@ use std::time::Duration;
 
 use command_line::output;
 use recording::write::{Packing, RecordingWriter};
-use ros_export::Entry;
+use ros_graph::export::Entry;
 
 use super::{Preamble, Store, Tally, name};
 use crate::RecorderError;

@@ -7,7 +7,7 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use recording::write::{Encoded, Packing, RecordingWriter};
-use ros_export::Entry;
+use ros_graph::export::Entry;
 
 use super::staged::{Progress, Staged};
 use super::{Preamble, Store, Tally, name};

@@ -7,7 +7,7 @@ use std::path::Path;
 
 use recording::RecordingError;
 use recording::write::{Encoded, RecordingWriter};
-use ros_export::Entry;
+use ros_graph::export::Entry;
 use transport::wall_ns;
 
 use crate::{Config, RecorderError};

@@ -1,6 +1,6 @@
 //! Destination of entries: files, or a black box.
 
-use ros_export::Entry;
+use ros_graph::export::Entry;
 
 use crate::RecorderError;
 

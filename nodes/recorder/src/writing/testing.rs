@@ -2,7 +2,7 @@
 
 use recording::Recording;
 use recording::write::Encoded;
-use ros_export::Entry;
+use ros_graph::export::Entry;
 
 pub(super) const SECOND: i64 = 1_000_000_000;
 

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use messages::{Name, NodeState, ScanHeader, Stamp, topic};
-use replay::{Content, PlaybackError, Poses, Timed};
+use ros_graph::replay::{Content, PlaybackError, Poses, Timed};
 use transport::{Graph, Health, Publisher, TransportError, monotonic_ns, with_causes};
 
 /// Most beams that lasers have, so that the publisher need not grow for a scan: it gets this room at

@@ -3,10 +3,9 @@
 use std::path::Path;
 
 use ::map::OccupancyGrid;
-use command_line::{OutputError, stdout};
-use offline::{Accepted, Options, Session, map_in};
+use command_line::{OutputError, say, stdout};
+use offline::{Accepted, Options, Progress, Session, map_in};
 use plots::draw_drive;
-use progress::{Progress, say};
 
 use super::super::limits::Reached;
 use super::super::{Task, course, drive};
@@ -92,7 +91,7 @@ fn one(
         let judged = (&trial.starts, &trial.followed);
         let figures = Figures::new((name.clone(), variant.name), judged, tally);
         let line = match json {
-            true => format!("{}\n", json::object(&figures)),
+            true => format!("{}\n", command_line::json::object(&figures)),
             false => figures.row(),
         };
         stdout::print(&line)?;

@@ -5,8 +5,7 @@ use std::collections::BTreeSet;
 use ::map::OccupancyGrid;
 use geometry::Pose;
 use messages::Odometry;
-use offline::{Accepted, Session, TakenScan, each_odometry};
-use progress::Progress;
+use offline::{Accepted, Progress, Session, TakenScan, each_odometry};
 use rand::rngs::Xoshiro256PlusPlus;
 use recording::{Kind, Recording};
 

@@ -1,8 +1,7 @@
 //! Creates and judges one variant of a drive.
 
 use engine::tracking::TrackingConfig;
-use offline::{Accepted, Options, Session, World};
-use progress::Progress;
+use offline::{Accepted, Options, Progress, Session, World};
 use recording::Recording;
 
 use super::super::drive::Moment;
