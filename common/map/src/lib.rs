@@ -6,19 +6,14 @@
 //! is within its limits. The crate knows no topics and no engine, and repairs nothing: an invalid
 //! map is an error with file, place and what is allowed.
 
-mod bmp;
-mod claim;
 mod description;
 mod error;
 mod foreign;
 mod grid;
 mod keys;
-mod kind;
 mod load;
 mod memory;
-mod pgm;
-mod png;
-mod raster;
+mod picture;
 mod rules;
 mod save;
 mod set;

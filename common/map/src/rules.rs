@@ -7,7 +7,28 @@
 //! shades equal to a threshold both agree.
 
 use crate::UNKNOWN;
-use crate::raster::{FULL, Pixel};
+
+/// Full brightness or opacity of a channel.
+const FULL: u16 = u16::MAX;
+
+/// A pixel in 16-bit steps regardless of the file, like in the image library of `map_server`, so
+/// that every threshold separates the same values.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct Pixel {
+    /// Red, green and blue; equal for grey.
+    pub(crate) colour: [u16; 3],
+    /// Opacity, if the image has an alpha channel.
+    pub(crate) alpha: Option<u16>,
+}
+
+impl Pixel {
+    pub(crate) fn grey(shade: u8) -> Self {
+        Pixel {
+            colour: [u16::from(shade) * 257; 3],
+            alpha: None,
+        }
+    }
+}
 
 const FREE: u8 = 0;
 const OCCUPIED: u8 = 100;
@@ -103,15 +124,11 @@ mod tests {
         }
     }
 
-    fn grey(value: u8) -> Pixel {
-        Pixel {
-            colour: [u16::from(value) * 257; 3],
-            alpha: None,
-        }
-    }
-
     fn cells(rules: Rules, shades: &[u8]) -> Vec<u8> {
-        shades.iter().map(|&s| rules.occupancy(grey(s))).collect()
+        shades
+            .iter()
+            .map(|&s| rules.occupancy(Pixel::grey(s)))
+            .collect()
     }
 
     #[test]
@@ -145,12 +162,12 @@ mod tests {
         assert_eq!(cells(rules, &[0, 51, 127, 128, 255]), [0, 20, 50, 50, 100]);
         let faint = Pixel {
             alpha: Some(FULL - 1),
-            ..grey(255)
+            ..Pixel::grey(255)
         };
         assert_eq!(rules.occupancy(faint), UNKNOWN);
         let opaque = Pixel {
             alpha: Some(FULL),
-            ..grey(255)
+            ..Pixel::grey(255)
         };
         assert_eq!(rules.occupancy(opaque), 100);
     }
@@ -173,7 +190,7 @@ mod tests {
             );
             let clear = Pixel {
                 alpha: Some(0),
-                ..grey(42)
+                ..Pixel::grey(42)
             };
             assert_eq!(rules.occupancy(clear), 42);
         }
