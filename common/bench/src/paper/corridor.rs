@@ -12,7 +12,6 @@ use geometry::Pose;
 use offline::{Field, Options, Session, TakenScan, World, no_truths};
 use plots::Votes;
 use plots::drawing::Scene;
-use recording::Recording;
 
 use super::folder::{Csv, digits};
 
@@ -68,24 +67,20 @@ pub(super) fn localize(file: &Path) -> anyhow::Result<Corridor> {
         return Err(no_truths(file));
     }
     let mut taken = Vec::new();
-    let session = Session::open(&recording, &options, None)?;
-    for scan in session.scans {
+    let mut session = Session::open(&recording, &options, None)?;
+    for scan in session.scans.by_ref() {
         let scan = scan?;
         if let Some(truth) = truths.get(&scan.stamp_ns) {
             taken.push((scan, truth.pose));
         }
     }
-    let chosen = PLACES.map(|share| (share * taken.len() as f64) as usize);
     let mut places = Vec::new();
-    for index in chosen {
-        let Some((scan, truth)) = taken.get(index) else {
-            continue;
-        };
-        places.push(locate((&recording, &options), (index + 1, scan), *truth)?);
-    }
-    let mut session = Session::open(&recording, &options, None)?;
-    if let Some(scan) = taken.first() {
-        session.ask(&scan.0)?;
+    for share in PLACES {
+        let index = (share * taken.len() as f64) as usize;
+        if let Some((scan, truth)) = taken.get(index) {
+            let scan = (index + 1, scan);
+            places.push(locate(&mut session, (file, &options), scan, *truth)?);
+        }
     }
     Ok(Corridor {
         map: session.map()?.clone(),
@@ -96,16 +91,15 @@ pub(super) fn localize(file: &Path) -> anyhow::Result<Corridor> {
 }
 
 fn locate(
-    (recording, options): (&Recording, &Options),
+    session: &mut Session<'_>,
+    (file, options): (&Path, &Options),
     (number, scan): (usize, &TakenScan),
     truth: Pose,
 ) -> anyhow::Result<Localized> {
-    let mut session = Session::open(recording, options, None)?;
     let answer = session.ask(scan)?.answer?;
     let most = distinct(answer.outcome, answer.frame, 1);
     let (Some(&by_votes), Some(best)) = (most.first(), answer.places.places.first()) else {
-        let path = recording.path();
-        return Err(plots::no_place(path, number as u64, answer.places));
+        return Err(plots::no_place(file, number as u64, answer.places));
     };
     let by_fit = best.map_from_laser;
     let world = World::prepare(session.map()?, &options.engine, Prior::Heading);
