@@ -79,7 +79,7 @@ pub(super) struct Sight {
 pub(super) type Cases = Vec<(Place, Vec<Sight>)>;
 
 pub(super) fn cases(table: Table, quick: bool, filter: &Filter) -> Cases {
-    let lists = filter.over(&own(table, quick));
+    let lists = filter.over(own(table, quick));
     let mut cases = Cases::new();
     for (&kind, &size) in pairs(&lists.kind, &lists.size) {
         for (&p_over_n, &headings) in pairs(&lists.p_over_n, &lists.headings) {
@@ -123,81 +123,72 @@ fn pairs<'a, A, B>(a: &'a [A], b: &'a [B]) -> impl Iterator<Item = (&'a A, &'a B
 
 impl Filter {
     /// The own lists, but for those that this one has.
-    fn over(&self, own: &Filter) -> Filter {
-        fn or<T: Clone>(asked: &[T], own: &[T]) -> Vec<T> {
-            if asked.is_empty() {
-                own.to_vec()
-            } else {
-                asked.to_vec()
+    fn over(&self, own: Filter) -> Filter {
+        fn or<T: Clone>(asked: &[T], own: Vec<T>) -> Vec<T> {
+            match asked {
+                [] => own,
+                asked => asked.to_vec(),
             }
         }
         Filter {
-            kind: or(&self.kind, &own.kind),
-            size: or(&self.size, &own.size),
-            p_over_n: or(&self.p_over_n, &own.p_over_n),
-            noise: or(&self.noise, &own.noise),
-            beams: or(&self.beams, &own.beams),
-            headings: or(&self.headings, &own.headings),
-            taper: or(&self.taper, &own.taper),
+            kind: or(&self.kind, own.kind),
+            size: or(&self.size, own.size),
+            p_over_n: or(&self.p_over_n, own.p_over_n),
+            noise: or(&self.noise, own.noise),
+            beams: or(&self.beams, own.beams),
+            headings: or(&self.headings, own.headings),
+            taper: or(&self.taper, own.taper),
         }
     }
 }
 
 fn own(table: Table, quick: bool) -> Filter {
-    let trapezoid = vec![TaperShape::Trapezoid];
-    let full = match table {
-        Table::Table1 => Filter {
-            kind: vec![Kind::Rooms],
-            size: vec![1200],
+    let common = Filter {
+        kind: vec![Kind::Rooms],
+        size: vec![1200],
+        p_over_n: vec![10.0, 25.0, 50.0, 100.0, 120.0],
+        noise: vec![10.0],
+        beams: vec![180, 8],
+        headings: vec![360],
+        taper: vec![TaperShape::Trapezoid],
+    };
+    let kind = vec![Kind::Rooms, Kind::Corridors, Kind::Boxes];
+    let noise = vec![2.0, 10.0];
+    match (table, quick) {
+        (Table::Table1, false) => Filter {
             p_over_n: vec![5.0, 10.0, 25.0, 50.0, 100.0, 120.0],
             noise: vec![5.0, 10.0, 15.0, 20.0, 25.0],
-            beams: vec![180, 8],
-            headings: vec![360],
-            taper: trapezoid,
+            ..common
         },
-        Table::Table2 => Filter {
-            kind: vec![Kind::Rooms],
-            size: vec![100, 200, 1200],
-            p_over_n: vec![10.0, 25.0, 50.0, 100.0, 120.0],
-            noise: vec![10.0],
-            beams: vec![180, 8],
-            headings: vec![360],
-            taper: trapezoid,
-        },
-        Table::Search => Filter {
-            kind: vec![Kind::Rooms, Kind::Corridors, Kind::Boxes],
-            size: vec![200, 1200, 4000, 5000],
-            p_over_n: vec![5.0, 10.0, 25.0, 50.0],
-            noise: vec![2.0, 10.0],
-            beams: vec![180, 8],
-            headings: vec![360, 720],
-            taper: vec![TaperShape::Trapezoid, TaperShape::Box],
-        },
-    };
-    if !quick {
-        return full;
-    }
-    let noise = vec![10.0];
-    match table {
-        Table::Table1 => Filter {
+        (Table::Table1, true) => Filter {
             p_over_n: vec![5.0, 25.0, 100.0],
-            noise,
-            ..full
+            ..common
         },
-        Table::Table2 => Filter {
+        (Table::Table2, false) => Filter {
+            size: vec![100, 200, 1200],
+            ..common
+        },
+        (Table::Table2, true) => Filter {
             size: vec![100],
             p_over_n: vec![10.0, 50.0, 120.0],
+            beams: vec![180],
+            ..common
+        },
+        (Table::Search, false) => Filter {
+            kind,
+            size: vec![200, 1200, 4000, 5000],
+            p_over_n: vec![5.0, 10.0, 25.0, 50.0],
+            noise,
+            headings: vec![360, 720],
+            taper: vec![TaperShape::Trapezoid, TaperShape::Box],
+            ..common
+        },
+        (Table::Search, true) => Filter {
+            kind,
+            p_over_n: vec![5.0],
             noise,
             beams: vec![180],
-            ..full
-        },
-        Table::Search => Filter {
-            size: vec![1200],
-            p_over_n: vec![5.0],
-            beams: vec![180],
-            headings: vec![360],
-            taper: vec![TaperShape::Trapezoid],
-            ..full
+            ..common
         },
     }
 }

@@ -107,13 +107,19 @@ impl City {
 
     fn build(&mut self, building: Rect) {
         self.fill(building, OCCUPIED);
-        let is_known = self.random.random_bool(KNOWN_SHARE);
-        self.fill(
-            shrunk(building),
-            if is_known { FREE } else { messages::UNKNOWN },
-        );
-        if is_known {
-            self.divide(shrunk(building));
+        let Rect {
+            x,
+            y,
+            width,
+            height,
+        } = building;
+        let inside = Rect::new(x + WALL, y + WALL, width - 2 * WALL, height - 2 * WALL);
+        match self.random.random_bool(KNOWN_SHARE) {
+            true => {
+                self.fill(inside, FREE);
+                self.divide(inside);
+            }
+            false => self.fill(inside, messages::UNKNOWN),
         }
         for (x_major, far) in [(true, false), (true, true), (false, false), (false, true)] {
             self.put_niches(building, x_major, far);
@@ -122,39 +128,22 @@ impl City {
 
     /// Cuts niches with walls into one façade of a building.
     fn put_niches(&mut self, building: Rect, x_major: bool, far: bool) {
-        let length = if x_major {
-            building.width
-        } else {
-            building.height
-        };
+        let lying = building.turned(!x_major);
         let mut at = self.length(NICHE_EVERY_M);
         loop {
             let (wide, deep) = (self.length(NICHE_M), self.length(NICHE_DEPTH_M));
-            if at + wide + WALL >= length {
+            if at + wide + WALL >= lying.width {
                 return;
             }
-            let outer = self.niche(
-                building,
-                (x_major, far),
-                (at - WALL, wide + 2 * WALL, deep + WALL),
-            );
-            self.fill(outer, OCCUPIED);
-            let inner = self.niche(building, (x_major, far), (at, wide, deep));
-            self.fill(inner, FREE);
+            for (rim, cell) in [(WALL, OCCUPIED), (0, FREE)] {
+                let deep = deep + rim;
+                let start = if far { lying.height - deep } else { 0 };
+                let (x, y) = (lying.x + at - rim, lying.y + start);
+                let niche = Rect::new(x, y, wide + 2 * rim, deep);
+                self.fill(niche.turned(!x_major), cell);
+            }
             at += wide + self.length(NICHE_EVERY_M);
         }
-    }
-
-    fn niche(
-        &self,
-        building: Rect,
-        (x_major, far): (bool, bool),
-        (at, wide, deep): (usize, usize, usize),
-    ) -> Rect {
-        let lying = building.turned(!x_major);
-        let start = if far { lying.height - deep } else { 0 };
-        let niche = Rect::new(lying.x + at, lying.y + start, wide, deep);
-        niche.turned(!x_major)
     }
 
     /// Divides a floor into rooms with doors, recursively.
@@ -168,24 +157,16 @@ impl City {
         let least = (ROOM_M.0 / RESOLUTION_M) as usize;
         let at = self.random.random_range(least..length - least);
         let door = (DOOR_M / RESOLUTION_M) as usize;
-        let across = floor.width.min(floor.height);
-        let gap = self
-            .random
-            .random_range(0..across.saturating_sub(door).max(1));
         let lying = floor.turned(!upright);
+        let across = lying.height;
+        let free = across.saturating_sub(door).max(1);
+        let gap = self.random.random_range(0..free);
+        let (x, y) = (lying.x + at, lying.y);
         let parts = [
-            Rect {
-                x: lying.x + at,
-                width: WALL,
-                ..lying
-            },
-            Rect::new(lying.x + at, lying.y + gap, WALL, door),
-            Rect { width: at, ..lying },
-            Rect {
-                x: lying.x + at + WALL,
-                width: length - at - WALL,
-                ..lying
-            },
+            Rect::new(x, y, WALL, across),
+            Rect::new(x, y + gap, WALL, door),
+            Rect::new(lying.x, y, at, across),
+            Rect::new(x + WALL, y, length - at - WALL, across),
         ];
         let [wall, opening, first, second] = parts.map(|part| part.turned(!upright));
         self.fill(wall, OCCUPIED);
@@ -203,16 +184,6 @@ impl Rect {
             false => self,
         }
     }
-}
-
-/// The inside of the walls.
-fn shrunk(building: Rect) -> Rect {
-    Rect::new(
-        building.x + WALL,
-        building.y + WALL,
-        building.width - 2 * WALL,
-        building.height - 2 * WALL,
-    )
 }
 
 #[cfg(test)]
