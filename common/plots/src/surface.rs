@@ -72,6 +72,11 @@ struct Corner {
 }
 
 impl Camera {
+    /// 1 where it looks from the side of the lowest y, with x to the right, and -1 from the other.
+    fn side(&self) -> f64 {
+        self.azimuth.cos().signum()
+    }
+
     /// Looks at a point in shares of the longer side, the map's middle at 0; y downwards.
     fn look(&self, (x, y, z): (f64, f64, f64)) -> Corner {
         let (sin, cos) = self.azimuth.sin_cos();

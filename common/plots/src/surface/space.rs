@@ -73,29 +73,19 @@ impl<'a> Space<'a> {
     /// Draws the axes; `up` is that of the height.
     pub(super) fn draw_axes(&self, scene: &mut Scene, relief: &Relief, up: Axis<'_>, unit: f64) {
         let edges = self.edges(relief, up);
-        for edge in &edges {
-            edge.draw_line(scene, unit);
-        }
         // Names come first: a number that one of them covers is left out.
         for edge in &edges {
             edge.write_name(scene, unit);
         }
         for edge in &edges {
-            edge.write_numbers(scene, unit);
+            edge.draw(scene, unit);
         }
     }
 
     fn edges<'b>(&self, relief: &Relief, up: Axis<'b>) -> [Edge<'b>; 3] {
         let (half_x, half_y) = relief.halves();
-        let nearness = |x: f64, y: f64| self.camera.look((x, y, 0.0)).nearness;
-        let front = match nearness(0.0, -half_y) > nearness(0.0, half_y) {
-            true => -half_y,
-            false => half_y,
-        };
-        let side = match nearness(-half_x, 0.0) > nearness(half_x, 0.0) {
-            true => -half_x,
-            false => half_x,
-        };
+        let side = self.camera.side();
+        let (near_x, near_y) = (-side * half_x, -side * half_y);
         let floor = |x: f64, y: f64| self.at((x, y, 0.0));
         let metres = |from: f64, half: f64, name| Axis {
             scale: Scale::Even(from, from + 2.0 * half * relief.longer_m),
@@ -112,8 +102,8 @@ impl<'a> Space<'a> {
         let y = metres(relief.from.1, half_y, "y, m");
         let (right_x, right_y) = rightmost(relief, self.camera);
         [
-            of_floor(x, floor(-half_x, front), floor(half_x, front)),
-            of_floor(y, floor(side, -half_y), floor(side, half_y)),
+            of_floor(x, floor(-half_x, near_y), floor(half_x, near_y)),
+            of_floor(y, floor(near_x, -half_y), floor(near_x, half_y)),
             Edge {
                 axis: up,
                 from: floor(right_x, right_y),
@@ -129,12 +119,10 @@ fn floor(relief: &Relief) -> [(f64, f64); 4] {
     [(-x, -y), (x, -y), (x, y), (-x, y)]
 }
 
-/// The one that is farthest to the right.
+/// The corner of the floor that is farthest to the right.
 fn rightmost(relief: &Relief, camera: &Camera) -> (f64, f64) {
-    let right = |&(x, y): &(f64, f64)| camera.look((x, y, 0.0)).at.0;
-    let corners = floor(relief).into_iter();
-    let last = corners.max_by(|a, b| right(a).total_cmp(&right(b)));
-    last.unwrap_or_default()
+    let (x, y) = relief.halves();
+    (camera.side() * x, -camera.side() * y)
 }
 
 /// The direction across an edge that leads away from a point.
@@ -154,12 +142,15 @@ impl Edge<'_> {
         )
     }
 
-    fn draw_line(&self, scene: &mut Scene, unit: f64) {
+    /// Draws the line with its ticks and numbers.
+    fn draw(&self, scene: &mut Scene, unit: f64) {
         let mut lines = Path::line(self.from, self.to);
-        for (value, _) in self.axis.scale.ticks(NUMBERS) {
-            let (x, y) = self.at(self.axis.scale.share(value));
+        for (value, text) in self.axis.scale.ticks(NUMBERS) {
+            let share = self.axis.scale.share(value);
+            let (x, y) = self.at(share);
             let (out_x, out_y) = self.outwards;
             lines.add_line((x, y), (x + 6.0 * unit * out_x, y + 6.0 * unit * out_y));
+            self.write(scene, &text, (share, BESIDE * unit), unit);
         }
         scene.stroke(lines, Stroke::new(theme::INK, unit.max(1.0)));
     }
@@ -169,13 +160,6 @@ impl Edge<'_> {
         let depths = ticks.iter().map(|(_, text)| self.depth(text, unit));
         let away = depths.fold(0.0, f64::max) + (BESIDE + NAME) * unit;
         self.write(scene, self.axis.name, (0.5, away), unit);
-    }
-
-    fn write_numbers(&self, scene: &mut Scene, unit: f64) {
-        for (value, text) in self.axis.scale.ticks(NUMBERS) {
-            let share = self.axis.scale.share(value);
-            self.write(scene, &text, (share, BESIDE * unit), unit);
-        }
     }
 
     /// How far a text reaches along the direction of the numbers.
