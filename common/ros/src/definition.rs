@@ -2,24 +2,19 @@
 //! fields.
 //!
 //! ```text
-//! message Name = "package/msg/Name" with "CONSTANTS" [Used] { field: type = default, … }
+//! message Name = "package/msg/Name" with "CONSTANTS" [Used] { field: type, … }
 //! part Name = "package/Name" with "CONSTANTS" [Used] { … }
-//! call Name [Used] { … }
+//! call Name { … }
 //! service Name = "package/srv/Name": Request -> Response;
 //! ```
 //!
 //! `message` is a [`RosMessage`](crate::RosMessage), `part` a type that others use, and `call` the
-//! request or response of a service. `Used` are the parts whose definitions follow, each with those
+//! request or response of a service, or a part of these, of which no recording has a definition.
+//! `Used` are the parts whose definitions follow, each with those
 //! that it uses itself. A part defines a macro of its name, so parts come first.
 
 /// An opaque byte, `byte`.
 pub(crate) type Byte = u8;
-
-/// A text of at most 255 bytes.
-pub(crate) type ShortString = String;
-
-/// A sequence of at most one element.
-pub(crate) type AtMostOne<T> = Vec<T>;
 
 /// A covariance row by row over x, y and yaw.
 pub(crate) type Rows3 = [f64; 9];
@@ -51,11 +46,8 @@ macro_rules! declare {
         part!($name = $ros, $($constants,)? lines!($fields [$($used),*]));
         declare!($($rest)*);
     };
-    ($(#[$about:meta])* call $name:ident [$($used:ident),*] $fields:tt $($rest:tt)*) => {
+    ($(#[$about:meta])* call $name:ident $fields:tt $($rest:tt)*) => {
         structure!($(#[$about])* $name $fields);
-        impl $name {
-            pub(crate) const DEFINITION: &'static str = lines!($fields [$($used),*]);
-        }
         declare!($($rest)*);
     };
     (service $name:ident = $ros:literal: $request:ident -> $response:ident; $($rest:tt)*) => {
@@ -63,8 +55,6 @@ macro_rules! declare {
         pub enum $name {}
         impl $crate::RosService for $name {
             const NAME: &'static str = $ros;
-            const REQUEST: &'static str = $request::DEFINITION;
-            const RESPONSE: &'static str = $response::DEFINITION;
             type Request = $request;
             type Response = $response;
         }
@@ -93,7 +83,7 @@ MSG: ",
 
 macro_rules! structure {
     ($(#[$about:meta])* $name:ident { $(
-        $(#[$of:meta])* $field:ident: $kind:ident $(<$item:ident>)? $(= $default:literal)?,
+        $(#[$of:meta])* $field:ident: $kind:ident $(<$item:ident>)?,
     )* }) => {
         $(#[$about])*
         #[derive(Debug, Clone, PartialEq, Default, serde::Serialize, serde::Deserialize)]
@@ -104,10 +94,10 @@ macro_rules! structure {
 /// Fields of a definition, and the parts that it uses.
 macro_rules! lines {
     ({ $(
-        $(#[$of:meta])* $field:ident: $kind:ident $(<$item:ident>)? $(= $default:literal)?,
+        $(#[$of:meta])* $field:ident: $kind:ident $(<$item:ident>)?,
     )* } [$($used:ident),*]) => {
         concat!(
-            $(kind!($kind $($item)?), " ", name!($field) $(, " ", $default)?, "\n",)*
+            $(kind!($kind $($item)?), " ", name!($field), "\n",)*
             $($used!(part),)*
         )
     };
@@ -138,8 +128,6 @@ macro_rules! kind {
     (Rows3) => { "float64[9]" };
     (Rows6) => { "float64[36]" };
     (String) => { "string" };
-    (ShortString) => { "string<=255" };
     (Vec $item:ident) => { concat!(kind!($item), "[]") };
-    (AtMostOne $item:ident) => { concat!(kind!($item), "[<=1]") };
     ($part:ident) => { $part!(name) };
 }

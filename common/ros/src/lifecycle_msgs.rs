@@ -13,7 +13,7 @@ declare! {
         label: String,
     }
 
-    part TransitionDescription = "lifecycle_msgs/TransitionDescription" [Transition, State] {
+    call TransitionDescription {
         transition: Transition,
         start_state: State,
         goal_state: State,
@@ -29,13 +29,13 @@ declare! {
     }
 
     /// Requests a transition: by label, or if that is empty, by id.
-    call ChangeStateRequest [Transition] {
+    call ChangeStateRequest {
         transition: Transition,
     }
 
     /// Result of the transition.
     #[derive(Copy)]
-    call ChangeStateResponse [] {
+    call ChangeStateResponse {
         /// True if the node is in the goal state.
         success: bool,
     }
@@ -44,13 +44,13 @@ declare! {
         ChangeStateRequest -> ChangeStateResponse;
 
     /// Current state.
-    call GetStateResponse [State] {
+    call GetStateResponse {
         current_state: State,
     }
 
     service GetState = "lifecycle_msgs/srv/GetState": Nothing -> GetStateResponse;
 
-    call GetAvailableStatesResponse [State] {
+    call GetAvailableStatesResponse {
         available_states: Vec<State>,
     }
 
@@ -58,7 +58,7 @@ declare! {
         Nothing -> GetAvailableStatesResponse;
 
     /// Transitions from the current state, or all of them.
-    call GetAvailableTransitionsResponse [TransitionDescription] {
+    call GetAvailableTransitionsResponse {
         available_transitions: Vec<TransitionDescription>,
     }
 

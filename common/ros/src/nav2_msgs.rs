@@ -18,7 +18,7 @@ declare! {
     }
 
     /// Pose of the robot, as on topic `initialpose`.
-    call SetInitialPoseRequest [PoseWithCovarianceStamped] {
+    call SetInitialPoseRequest {
         pose: PoseWithCovarianceStamped,
     }
 

@@ -1,49 +1,12 @@
 //! `rcl_interfaces`: parameters of a node, and the services that read and set them.
 
 use super::Time;
-use super::definition::{AtMostOne, Byte};
-
-/// `rcl_interfaces/msg/ParameterType`: type of a parameter's value.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-#[repr(u8)]
-pub enum ParameterType {
-    /// No such parameter.
-    NotSet = 0,
-    Bool = 1,
-    Integer = 2,
-    Double = 3,
-    String = 4,
-    ByteArray = 5,
-    BoolArray = 6,
-    IntegerArray = 7,
-    DoubleArray = 8,
-    StringArray = 9,
-}
-
-impl ParameterType {
-    /// Returns the type with this number, if there is one.
-    pub fn from_code(code: u8) -> Option<Self> {
-        [
-            Self::NotSet,
-            Self::Bool,
-            Self::Integer,
-            Self::Double,
-            Self::String,
-            Self::ByteArray,
-            Self::BoolArray,
-            Self::IntegerArray,
-            Self::DoubleArray,
-            Self::StringArray,
-        ]
-        .into_iter()
-        .find(|kind| *kind as u8 == code)
-    }
-}
+use super::definition::Byte;
 
 declare! {
     /// `rcl_interfaces/msg/ParameterValue`: `type` selects the field that holds the value.
     part ParameterValue = "rcl_interfaces/ParameterValue" [] {
-        /// A [`ParameterType`].
+        /// Number of the field behind this one that holds the value, from 1; 0 if there is none.
         r#type: u8,
         bool_value: bool,
         integer_value: i64,
@@ -62,26 +25,25 @@ declare! {
         value: ParameterValue,
     }
 
-    part ParameterDescriptor = "rcl_interfaces/ParameterDescriptor"
-        [FloatingPointRange, IntegerRange] {
+    call ParameterDescriptor {
         name: String,
-        /// A [`ParameterType`].
+        /// Type, as in [`ParameterValue`].
         r#type: u8,
         description: String,
         /// Description of further constraints.
         additional_constraints: String,
         /// True if it cannot be set while the node runs.
-        read_only: bool = false,
+        read_only: bool,
         /// True if its type may change.
-        dynamic_typing: bool = false,
+        dynamic_typing: bool,
         /// Allowed range of a floating-point number; at most one.
-        floating_point_range: AtMostOne<FloatingPointRange>,
+        floating_point_range: Vec<FloatingPointRange>,
         /// Allowed range of an integer; at most one.
-        integer_range: AtMostOne<IntegerRange>,
+        integer_range: Vec<IntegerRange>,
     }
 
     #[derive(Copy)]
-    part FloatingPointRange = "rcl_interfaces/FloatingPointRange" [] {
+    call FloatingPointRange {
         from_value: f64,
         to_value: f64,
         /// Step between allowed values; 0 if all are allowed.
@@ -89,21 +51,21 @@ declare! {
     }
 
     #[derive(Copy)]
-    part IntegerRange = "rcl_interfaces/IntegerRange" [] {
+    call IntegerRange {
         from_value: i64,
         to_value: i64,
         /// Step between allowed values; 0 if all are allowed.
         step: u64,
     }
 
-    part SetParametersResult = "rcl_interfaces/SetParametersResult" [] {
+    call SetParametersResult {
         /// True if the parameter was set.
         successful: bool,
         /// Reason if it was not.
         reason: String,
     }
 
-    part ListParametersResult = "rcl_interfaces/ListParametersResult" [] {
+    call ListParametersResult {
         names: Vec<String>,
         /// Prefixes of the names, up to their last dots.
         prefixes: Vec<String>,
@@ -120,17 +82,17 @@ declare! {
     }
 
     /// Request of several services: names of parameters.
-    call ParameterNames [] {
+    call ParameterNames {
         names: Vec<String>,
     }
 
     /// Request of two services: parameters to set.
-    call SetParametersRequest [Parameter] {
+    call SetParametersRequest {
         parameters: Vec<Parameter>,
     }
 
     /// Values of parameters, in the order of the request.
-    call GetParametersResponse [ParameterValue] {
+    call GetParametersResponse {
         values: Vec<ParameterValue>,
     }
 
@@ -138,8 +100,8 @@ declare! {
         ParameterNames -> GetParametersResponse;
 
     /// Types of parameters, in the order of the request.
-    call GetParameterTypesResponse [] {
-        /// Values of [`ParameterType`].
+    call GetParameterTypesResponse {
+        /// Types, as in [`ParameterValue`].
         types: Vec<u8>,
     }
 
@@ -147,7 +109,7 @@ declare! {
         ParameterNames -> GetParameterTypesResponse;
 
     /// Result for each parameter, in the order of the request.
-    call SetParametersResponse [SetParametersResult] {
+    call SetParametersResponse {
         results: Vec<SetParametersResult>,
     }
 
@@ -155,7 +117,7 @@ declare! {
         SetParametersRequest -> SetParametersResponse;
 
     /// Result for all parameters: either all are set or none.
-    call SetParametersAtomicallyResponse [SetParametersResult] {
+    call SetParametersAtomicallyResponse {
         result: SetParametersResult,
     }
 
@@ -163,14 +125,14 @@ declare! {
         SetParametersRequest -> SetParametersAtomicallyResponse;
 
     /// Request for names of parameters.
-    call ListParametersRequest [] {
+    call ListParametersRequest {
         /// Prefixes of the names, up to a dot; empty for all parameters.
         prefixes: Vec<String>,
         /// Number of levels below the prefixes; 0 for all levels.
         depth: u64,
     }
 
-    call ListParametersResponse [ListParametersResult] {
+    call ListParametersResponse {
         result: ListParametersResult,
     }
 
@@ -178,7 +140,7 @@ declare! {
         ListParametersRequest -> ListParametersResponse;
 
     /// Descriptions of parameters, in the order of the request.
-    call DescribeParametersResponse [ParameterDescriptor] {
+    call DescribeParametersResponse {
         descriptors: Vec<ParameterDescriptor>,
     }
 

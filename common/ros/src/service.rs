@@ -7,10 +7,6 @@ use serde::{Deserialize, Serialize};
 pub trait RosService {
     /// Name, such as `std_srvs/srv/Empty`.
     const NAME: &'static str;
-    /// Definition of the request; see [`RosMessage::DEFINITION`](crate::RosMessage::DEFINITION).
-    const REQUEST: &'static str;
-    /// Definition of the response.
-    const RESPONSE: &'static str;
     type Request: DeserializeOwned;
     type Response: Serialize;
 }
@@ -19,10 +15,6 @@ pub trait RosService {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub struct Nothing {
     structure_needs_at_least_one_member: u8,
-}
-
-impl Nothing {
-    pub(crate) const DEFINITION: &'static str = "";
 }
 
 declare! {

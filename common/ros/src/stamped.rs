@@ -2,11 +2,11 @@
 
 use messages::GroundTruth;
 
-use super::{Header, Pose, PoseWithCovariance, RosMessage, Time, Transform, planar};
+use super::{Header, Pose, PoseWithCovariance, Time, Transform, planar};
 
 declare! {
     /// A pose with its covariance.
-    part PoseWithCovarianceStamped = "geometry_msgs/PoseWithCovarianceStamped"
+    message PoseWithCovarianceStamped = "geometry_msgs/msg/PoseWithCovarianceStamped"
         [Header, PoseWithCovariance] {
         /// Time, and the frame of the pose.
         header: Header,
@@ -40,12 +40,6 @@ declare! {
         header: Header,
         pose: Pose,
     }
-}
-
-impl RosMessage for PoseWithCovarianceStamped {
-    const SCHEMA: &'static str = "geometry_msgs/msg/PoseWithCovarianceStamped";
-    const DEFINITION: &'static str =
-        lines!({ header: Header, pose: PoseWithCovariance, } [Header, PoseWithCovariance]);
 }
 
 impl PoseStamped {

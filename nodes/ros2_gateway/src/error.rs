@@ -29,8 +29,8 @@ pub enum GatewayError {
          ones, and zeros where nobody knows"
     )]
     InitialPoseCovariance,
-    #[error("the definition of {name}: {line:?} is not a field")]
-    Definition { name: String, line: String },
+    #[error("the hash of the type {0} is not known")]
+    UnknownType(String),
     #[error(transparent)]
     Map(#[from] map::MapError),
     #[error(transparent)]

@@ -10,8 +10,8 @@ use std::path::Path;
 
 use geometry::Pose;
 use ros::rcl_interfaces::{
-    FloatingPointRange, ListParametersResult, Parameter, ParameterDescriptor, ParameterType,
-    ParameterValue, SetParametersResult,
+    FloatingPointRange, ListParametersResult, Parameter, ParameterDescriptor, ParameterValue,
+    SetParametersResult,
 };
 
 use crate::GatewayError;
@@ -105,7 +105,7 @@ impl Parameters {
         Ok((declared, value))
     }
 
-    /// Returns the value of a parameter; of type `NotSet` if there is none of that name.
+    /// Returns the value of a parameter; of type 0 if there is none of that name.
     pub(super) fn get(&self, name: &str) -> ParameterValue {
         self.0
             .get(name)
@@ -118,7 +118,7 @@ impl Parameters {
         Parameter { name, value }
     }
 
-    /// Returns the type, range and meaning of a parameter; of type `NotSet` if there is none.
+    /// Returns the type, range and meaning of a parameter; of type 0 if there is none.
     pub(super) fn describe(&self, name: &str) -> ParameterDescriptor {
         let unknown = ParameterDescriptor {
             name: name.to_owned(),
@@ -278,21 +278,14 @@ impl std::fmt::Display for Value {
 
 impl From<&Value> for ParameterValue {
     fn from(value: &Value) -> Self {
-        let mut message = ParameterValue::default();
-        let kind = match value {
-            Value::Bool(_) => ParameterType::Bool,
-            Value::Integer(_) => ParameterType::Integer,
-            Value::Double(_) => ParameterType::Double,
-            Value::Text(_) => ParameterType::String,
-        };
-        message.r#type = kind as u8;
+        let mut of = ParameterValue::default();
         match value {
-            Value::Bool(value) => message.bool_value = *value,
-            Value::Integer(value) => message.integer_value = *value,
-            Value::Double(value) => message.double_value = *value,
-            Value::Text(text) => message.string_value = text.clone().into_owned(),
+            Value::Bool(value) => (of.r#type, of.bool_value) = (1, *value),
+            Value::Integer(value) => (of.r#type, of.integer_value) = (2, *value),
+            Value::Double(value) => (of.r#type, of.double_value) = (3, *value),
+            Value::Text(text) => (of.r#type, of.string_value) = (4, text.to_string()),
         }
-        message
+        of
     }
 }
 
@@ -300,13 +293,14 @@ impl TryFrom<&ParameterValue> for Value {
     type Error = String;
 
     fn try_from(value: &ParameterValue) -> Result<Self, String> {
-        match ParameterType::from_code(value.r#type) {
-            Some(ParameterType::Bool) => Ok(Value::Bool(value.bool_value)),
-            Some(ParameterType::Integer) => Ok(Value::Integer(value.integer_value)),
-            Some(ParameterType::Double) => Ok(Value::Double(value.double_value)),
-            Some(ParameterType::String) => Ok(Value::Text(value.string_value.clone().into())),
-            Some(other) => Err(format!("of type {other:?}")),
-            None => Err(format!("of type {}", value.r#type)),
+        match value.r#type {
+            1 => Ok(Value::Bool(value.bool_value)),
+            2 => Ok(Value::Integer(value.integer_value)),
+            3 => Ok(Value::Double(value.double_value)),
+            4 => Ok(Value::Text(value.string_value.clone().into())),
+            0 => Err("not set".to_owned()),
+            5..=9 => Err("a list".to_owned()),
+            other => Err(format!("of type {other}")),
         }
     }
 }

@@ -9,9 +9,7 @@ use zenoh_session::Report;
 
 use super::expected::{Expected, Seen};
 use super::received::{Sample, Senders};
-use super::{
-    Calls, Discovery, Keeping, MAX_REQUEST_BYTES, Member, Sink, Source, Topic, description,
-};
+use super::{Calls, Discovery, Keeping, MAX_REQUEST_BYTES, Member, Sink, Source, Topic, TypeInfo};
 use crate::GatewayError;
 
 pub(crate) struct Publisher<M> {
@@ -51,7 +49,7 @@ impl<M: RosMessage> Publisher<M> {
     ) -> Result<Self, GatewayError> {
         let topic = Topic {
             name,
-            info: &description::of_message::<M>()?,
+            info: &TypeInfo::of(M::SCHEMA)?,
             keeping,
             depth,
         };
@@ -91,7 +89,7 @@ impl<M: RosMessage + DeserializeOwned> Subscription<M> {
     ) -> Result<Self, GatewayError> {
         let topic = Topic {
             name,
-            info: &description::of_message::<M>()?,
+            info: &TypeInfo::of(M::SCHEMA)?,
             keeping,
             depth,
         };
@@ -156,10 +154,9 @@ pub(crate) struct Service<S> {
 
 impl<S: RosService> Service<S> {
     pub(crate) fn open(member: &Member, name: &str) -> Result<Self, GatewayError> {
-        let info = description::of_service(S::NAME, S::REQUEST, S::RESPONSE)?;
         Ok(Service {
             name: name.to_owned(),
-            calls: member.calls(name, &info)?,
+            calls: member.calls(name, &TypeInfo::of(S::NAME)?)?,
             service: PhantomData,
         })
     }

@@ -28,7 +28,7 @@ fn what_cannot_be_set_says_why() {
     assert!(idle.successful && !idle.reason.is_empty());
     let text: ParameterValue = (&Value::Text("odom2".into())).into();
     let array = ParameterValue {
-        r#type: ParameterType::DoubleArray as u8,
+        r#type: 8,
         ..ParameterValue::default()
     };
     for (name, value) in [

@@ -9,7 +9,6 @@
 //! Humble writes `TypeHashNotSupported` for each hash. The gateway takes its messages, and
 //! publishes on its keys as well: that costs next to nothing without a listener.
 //!
-//! The crate `ros` has the definitions of messages, and `hiroz-schema` makes the hashes. Its sister
 //! `hiroz-protocol`, which writes the same keys and tokens, builds only with all transports of
 //! Zenoh, most of which are not wanted here.
 
