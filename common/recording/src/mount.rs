@@ -254,10 +254,10 @@ pub(crate) fn isometry(
     let place = transform.translation;
     let (turn, mend) = transform.rotation.mended()?;
     if !(place.x.is_finite() && place.y.is_finite() && place.z.is_finite()) {
-        return Err(ConversionError::Position {
-            x: place.x,
-            y: place.y,
-        });
+        return Err(ConversionError(format!(
+            "the position ({}, {}) is not finite",
+            place.x, place.y
+        )));
     }
     let isometry = Isometry3::from_parts(
         Translation3::new(place.x, place.y, place.z),

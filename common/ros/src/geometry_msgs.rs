@@ -151,13 +151,20 @@ impl Quaternion {
         }
         let length = squared.sqrt();
         if (length - 1.0).abs() > ROUNDING {
-            return Err(ConversionError::Rotation { x, y, z, w });
+            return Err(self.no_rotation());
         }
         let [x, y, z, w] = [x, y, z, w].map(|part| part / length);
         match squared.is_finite() {
             true => Ok((Quaternion { x, y, z, w }, Some(Mend::Length(length)))),
-            false => Err(ConversionError::Rotation { x, y, z, w }),
+            false => Err(self.no_rotation()),
         }
+    }
+
+    fn no_rotation(self) -> ConversionError {
+        let Quaternion { x, y, z, w } = self;
+        ConversionError(format!(
+            "the quaternion ({x}, {y}, {z}, {w}) is not a rotation; allowed: a length of 1"
+        ))
     }
 }
 
@@ -178,7 +185,9 @@ impl Pose {
     pub fn planar(&self) -> Result<geometry::Pose, ConversionError> {
         let Point { x, y, .. } = self.position;
         if !(x.is_finite() && y.is_finite()) {
-            return Err(ConversionError::Position { x, y });
+            return Err(ConversionError(format!(
+                "the position ({x}, {y}) is not finite"
+            )));
         }
         Ok(geometry::Pose::new(x, y, self.orientation.yaw()?))
     }
@@ -290,10 +299,8 @@ mod tests {
         let mut pose = Pose::from_planar(geometry::Pose::new(1.0, 2.0, PI));
         assert_eq!(pose.planar().unwrap(), geometry::Pose::new(1.0, 2.0, PI));
         pose.position.x = f64::INFINITY;
-        assert!(matches!(
-            pose.planar(),
-            Err(ConversionError::Position { .. })
-        ));
+        let error = pose.planar().unwrap_err().to_string();
+        assert_eq!(error, "the position (inf, 2) is not finite");
     }
 
     #[test]

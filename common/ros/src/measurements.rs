@@ -15,9 +15,11 @@ pub fn frame(frame: &str) -> Result<FrameName, ConversionError> {
     if frame.len() <= FrameName::CAPACITY {
         return Ok(FrameName::new(frame));
     }
-    Err(ConversionError::Frame {
-        frame: frame.into(),
-    })
+    Err(ConversionError(format!(
+        "the frame {frame:?} has {} bytes, at most {} are allowed",
+        frame.len(),
+        FrameName::CAPACITY
+    )))
 }
 
 /// Converts the header of a scan of the graph's only laser; `mount` is the mount of the laser on

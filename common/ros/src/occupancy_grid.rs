@@ -36,13 +36,14 @@ impl OccupancyGridMsg {
         let cells = self.data.iter().enumerate().map(cell);
         let cells: Vec<u8> = cells.collect::<Result<_, _>>()?;
         let info = &self.info;
-        Ok(OccupancyGrid::from_parts(
+        let grid = OccupancyGrid::from_parts(
             info.width,
             info.height,
             shortest_decimal(info.resolution),
             info.origin.planar()?,
             cells,
-        )?)
+        );
+        grid.map_err(|error| ConversionError(error.to_string()))
     }
 
     /// Converts a grid to a message with an empty header.
@@ -102,7 +103,9 @@ fn cell((index, &found): (usize, &i8)) -> Result<u8, ConversionError> {
         -1 => Ok(map::UNKNOWN),
         // Not negative, so the value stays the same.
         0..=100 => Ok(found as u8),
-        _ => Err(ConversionError::Cell { index, found }),
+        _ => Err(ConversionError(format!(
+            "cell {index} is {found}; allowed: 0..=100, and -1 for unknown"
+        ))),
     }
 }
 

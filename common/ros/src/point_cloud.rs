@@ -92,13 +92,13 @@ impl PointCloud2 {
             .and_then(|before| before.checked_add(length?))
             .filter(|end| rows == 0 || (is_apart && *end <= self.data.len()));
         let (Some(_), Some(length)) = (end, length) else {
-            return Err(ConversionError::CloudSize {
-                height: self.height,
-                width: self.width,
-                point_step: self.point_step,
-                row_step: self.row_step,
-                found: self.data.len(),
-            });
+            return Err(ConversionError(format!(
+                "the point cloud has {} bytes: {} rows of {} points, {point} bytes a point and \
+                 {row} a row, do not fit",
+                self.data.len(),
+                self.height,
+                self.width
+            )));
         };
         let stamp_ns = self.header.stamp.as_ns();
         let point_of = move |bytes: &[u8]| CloudPoint {
@@ -121,11 +121,12 @@ impl PointCloud2 {
         };
         self.number(field, 7..=8).ok_or_else(|| {
             let found: Vec<String> = self.fields.iter().take(16).map(describe).collect();
-            ConversionError::CloudField {
-                field,
-                point_step: self.point_step,
-                found: found.join(", "),
-            }
+            ConversionError(format!(
+                "the point cloud has no usable field {field}: allowed is one float32 (7) or float64 \
+                 (8) within its points of {} bytes; it has {}",
+                self.point_step,
+                found.join(", ")
+            ))
         })
     }
 

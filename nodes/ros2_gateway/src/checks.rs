@@ -55,22 +55,19 @@ pub(crate) fn measured_ns(topic: &str, stamp: Time) -> Result<i64, GatewayError>
     if sec >= 0 && nanosec < 1_000_000_000 {
         return Ok(stamp.as_ns());
     }
-    Err(GatewayError::Stamp {
-        topic: topic.to_owned(),
-        sec,
-        nanosec,
-    })
+    Err(GatewayError::Refused(format!(
+        "the stamp of {topic} is {sec} s and {nanosec} ns: allowed are times from 1970 on, with \
+         less than 1000000000 ns"
+    )))
 }
 
 fn finite(topic: &str, field: &'static str, found: f64) -> Result<(), GatewayError> {
     if found.is_finite() {
         return Ok(());
     }
-    Err(GatewayError::Number {
-        topic: topic.to_owned(),
-        field,
-        found,
-    })
+    Err(GatewayError::Refused(format!(
+        "{field} of {topic} is {found}: allowed is a finite number"
+    )))
 }
 
 #[cfg(test)]

@@ -59,24 +59,21 @@ impl Frames {
     fn add(&mut self, transform: &TransformStamped) -> Result<(), GatewayError> {
         let (parent, child) = (&transform.header.frame_id, &transform.child_frame_id);
         if let Some(frame) = [parent, child].into_iter().find(|f| f.len() > MAX_NAME) {
-            return Err(GatewayError::FrameName {
-                found: frame.len(),
-                most: MAX_NAME,
-            });
+            return Err(GatewayError::Refused(format!(
+                "a frame's name has {} bytes: allowed are at most {MAX_NAME}",
+                frame.len()
+            )));
         }
         if self.fixed.children() >= MAX_FRAMES {
-            return Err(GatewayError::Frames {
-                frame: child.clone(),
-                most: MAX_FRAMES,
-            });
+            return Err(GatewayError::Refused(format!(
+                "too many frames, {child:?} is ignored: allowed are {MAX_FRAMES}"
+            )));
         }
-        self.fixed
-            .add(transform)
-            .map_err(|source| GatewayError::Transform {
-                parent: parent.clone(),
-                child: child.clone(),
-                source,
-            })?;
+        self.fixed.add(transform).map_err(|error| {
+            GatewayError::Refused(format!(
+                "the transform from {parent} to {child} is ignored: {error}"
+            ))
+        })?;
         self.mounts.clear();
         if let Ok((_, Some(mend))) = transform.transform.rotation.mended()
             && self.mended.insert(child.clone())
@@ -118,11 +115,11 @@ impl Frames {
         let mount = match (self.given.get(index), found) {
             (Some(given), _) => Some(*given),
             (None, Some(mount)) if mount.tilt_degrees > MAX_TILT_DEGREES => {
-                return Err(GatewayError::Tilted {
-                    laser: laser.to_owned(),
-                    base: mount.base_frame,
-                    tilt_degrees: mount.tilt_degrees,
-                });
+                return Err(GatewayError::Refused(format!(
+                    "the laser {laser} is tilted by {:.1} degrees against {}: allowed are at most \
+                     {MAX_TILT_DEGREES}, also upside down",
+                    mount.tilt_degrees, mount.base_frame
+                )));
             }
             (None, mount) => mount.as_ref().map(Mount::from),
         };
@@ -156,8 +153,11 @@ impl Frames {
     ) -> Result<CloudMount, GatewayError> {
         let found = || self.fixed.cloud_mount(self.base.as_deref(), lidar);
         let mount = given.or_else(|| found().map(|(_, mount)| mount));
-        let mount = mount.ok_or_else(|| GatewayError::NoCloudMount {
-            frame: lidar.to_owned(),
+        let mount = mount.ok_or_else(|| {
+            GatewayError::Refused(format!(
+                "no transform says where {lidar}, the frame of the point cloud, sits on the robot: \
+                 allowed are clouds with a mount, by /tf_static or --cloud-mount"
+            ))
         })?;
         self.keep((0, lidar.to_owned()), Some(mount.planar()));
         Ok(mount)

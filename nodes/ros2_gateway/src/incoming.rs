@@ -131,11 +131,11 @@ impl Incoming {
             let mut second = None;
             for transform in message.transforms {
                 if self.sent.is_from_another(&transform, &self.odom_frame) {
-                    second = Some(GatewayError::SecondBroadcaster {
-                        parent: transform.header.frame_id,
-                        child: transform.child_frame_id,
-                        topic: self.tf.clone(),
-                    });
+                    second = Some(GatewayError::Refused(format!(
+                        "another node publishes the transform from {} to {} on {}, as this one \
+                         does, and poses jump between the two: stop the other one, as AMCL or a SLAM",
+                        transform.header.frame_id, transform.child_frame_id, self.tf
+                    )));
                     continue;
                 }
                 if !alone && transform.header.frame_id.trim_start_matches('/') == self.odom_frame {

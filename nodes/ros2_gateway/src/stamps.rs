@@ -13,7 +13,11 @@ pub(crate) fn in_map(of: Stamp, map_frame: &str) -> Result<Header, GatewayError>
 /// Converts nanoseconds since 1970 to a time of ROS.
 pub(crate) fn stamp(stamp_ns: i64) -> Result<Time, GatewayError> {
     let stamp = Time::from_ns(stamp_ns).filter(|_| stamp_ns >= 0);
-    stamp.ok_or(GatewayError::Unstampable { stamp_ns })
+    stamp.ok_or_else(|| {
+        GatewayError::Refused(format!(
+            "a stamp of {stamp_ns} ns: allowed are 0 to 2147483647999999999, the times of ROS"
+        ))
+    })
 }
 
 /// A step back by more than this is from a clock that was set, or a simulation or recording that

@@ -24,10 +24,10 @@ pub(super) fn of_message(
 ) -> Result<InitialPose, GatewayError> {
     let frame = message.header.frame_id.trim_start_matches('/');
     if frame != map_frame.trim_start_matches('/') {
-        return Err(GatewayError::InitialPoseFrame {
-            found: message.header.frame_id.clone(),
-            allowed: map_frame.to_owned(),
-        });
+        return Err(GatewayError::Refused(format!(
+            "the initial pose is in frame {:?}: allowed is {map_frame:?}",
+            message.header.frame_id
+        )));
     }
     let said_ns = measured_ns("the initial pose", message.header.stamp)?;
     let pose = message.pose.pose.planar()?;
@@ -85,9 +85,13 @@ fn widened(rows: [f64; 9]) -> Result<Covariance, GatewayError> {
             .iter()
             .all(|variance| *variance >= 0.0)
         && covariance.is_positive_definite();
-    is_sound
-        .then_some(covariance)
-        .ok_or(GatewayError::InitialPoseCovariance)
+    is_sound.then_some(covariance).ok_or_else(|| {
+        GatewayError::Refused(
+            "the covariance of the initial pose is none: allowed are finite, symmetric and positive \
+             ones, and zeros where nobody knows"
+                .to_owned(),
+        )
+    })
 }
 
 #[cfg(test)]

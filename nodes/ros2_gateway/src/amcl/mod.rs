@@ -94,10 +94,8 @@ pub(crate) fn run(graph: &Graph, config: &Config, tick: Duration) -> Result<(), 
 
 fn load(parameters: &mut Parameters, path: &Path, node: &str) -> Result<Vec<String>, GatewayError> {
     let file = path.display().to_string();
-    let text = std::fs::read_to_string(path).map_err(|error| GatewayError::ParameterFile {
-        file: file.clone(),
-        reason: error.to_string(),
-    })?;
+    let text = std::fs::read_to_string(path)
+        .map_err(|error| GatewayError::Refused(format!("{file}: {error}")))?;
     params_file::load(parameters, &text, &file, node)
 }
 

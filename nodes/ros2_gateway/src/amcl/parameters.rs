@@ -14,7 +14,6 @@ use ros::rcl_interfaces::{
     SetParametersResult,
 };
 
-use crate::GatewayError;
 pub(crate) use declared::FILE;
 use declared::{ALL, Counts, Declared};
 
@@ -38,11 +37,7 @@ impl Default for Parameters {
 impl Parameters {
     /// Takes a value of a file. Returns a remark if the parameter is not one of AMCL's or has no
     /// meaning here.
-    pub(super) fn load(
-        &mut self,
-        name: &str,
-        value: Value,
-    ) -> Result<Option<String>, GatewayError> {
+    pub(super) fn load(&mut self, name: &str, value: Value) -> Result<Option<String>, String> {
         let Some(declared) = declared(name) else {
             return Ok(Some(format!(
                 "parameter {name} is none of AMCL's, and ignored"
@@ -94,9 +89,8 @@ impl Parameters {
     ) -> Result<(&'static Declared, Value), String> {
         let declared =
             declared(name).ok_or_else(|| format!("{name} is none of AMCL's parameters"))?;
-        let value =
-            Value::try_from(value).map_err(|found| refused(declared, &found).to_string())?;
-        let value = fitting(declared, value).map_err(|error| error.to_string())?;
+        let value = Value::try_from(value).map_err(|found| refused(declared, &found))?;
+        let value = fitting(declared, value)?;
         if declared.counts == Counts::AtStart && self.0.get(name) != Some(&value) {
             return Err(format!(
                 "{name} cannot change while the node runs: set it in --params-file and start again"
@@ -227,7 +221,7 @@ fn declared(name: &str) -> Option<&'static Declared> {
 }
 
 /// Converts a value to the parameter's type and checks its range: an integer is a number, too.
-fn fitting(declared: &Declared, value: Value) -> Result<Value, GatewayError> {
+fn fitting(declared: &Declared, value: Value) -> Result<Value, String> {
     let value = match (&declared.default, value) {
         (Value::Double(_), Value::Integer(whole)) => Value::Double(whole as f64),
         (_, value) => value,
@@ -246,7 +240,7 @@ fn fitting(declared: &Declared, value: Value) -> Result<Value, GatewayError> {
     }
 }
 
-fn refused(declared: &Declared, found: &str) -> GatewayError {
+fn refused(declared: &Declared, found: &str) -> String {
     let allowed = match (&declared.default, declared.range) {
         (Value::Bool(_), _) => "true and false".to_owned(),
         (Value::Integer(_), _) => "whole numbers".to_owned(),
@@ -254,11 +248,8 @@ fn refused(declared: &Declared, found: &str) -> GatewayError {
         (Value::Double(_), Some((least, most))) => format!("numbers from {least} to {most}"),
         (Value::Text(_), _) => format!("texts of at most {} bytes", messages::FrameName::CAPACITY),
     };
-    GatewayError::Parameter {
-        name: declared.name.to_owned(),
-        found: found.to_owned(),
-        allowed,
-    }
+    let name = declared.name;
+    format!("parameter {name} is {found}: allowed are {allowed}")
 }
 
 impl std::fmt::Display for Value {

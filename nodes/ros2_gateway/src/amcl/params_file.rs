@@ -16,10 +16,6 @@ use crate::GatewayError;
 
 const PARAMETERS: &str = "ros__parameters";
 
-/// Largest size of a file in bytes, and its largest depth: many times those of a whole robot.
-const MAX_BYTES: usize = 1 << 20;
-const MAX_DEPTH: usize = 16;
-
 /// Loads the parameters of the node with this full name from a file's text; returns remarks on
 /// those without effect.
 pub(super) fn load(
@@ -28,19 +24,10 @@ pub(super) fn load(
     file: &str,
     node: &str,
 ) -> Result<Vec<String>, GatewayError> {
-    let refuse = |reason: String| GatewayError::ParameterFile {
-        file: file.to_owned(),
-        reason,
-    };
-    if text.len() > MAX_BYTES {
-        let found = text.len();
-        return Err(refuse(format!(
-            "it has {found} bytes: allowed are {MAX_BYTES}"
-        )));
-    }
+    let refuse = |reason: String| GatewayError::Refused(format!("{file}: {reason}"));
     let root: Json = serde_saphyr::from_str(text).map_err(|error| refuse(error.to_string()))?;
     let mut found = Found::new();
-    find(&root, "", MAX_DEPTH, &mut found).map_err(&refuse)?;
+    find(&root, "", &mut found).map_err(&refuse)?;
     let mut remarks = Vec::new();
     // Wildcards sort before names, so that names override them.
     found.sort_by(|a, b| a.0.cmp(&b.0));
@@ -48,27 +35,20 @@ pub(super) fn load(
     for (name, values) in found.iter().filter(|(name, _)| is_meant(name, node)) {
         is_there = true;
         let mut flat = Vec::new();
-        flatten(values, String::new(), MAX_DEPTH, &mut flat).map_err(&refuse)?;
+        flatten(values, String::new(), &mut flat);
         for (parameter, json) in flat {
-            let value = value(json).ok_or_else(|| {
-                refuse(format!(
-                    "{parameter} of {name} is {}: allowed are true, false, numbers and texts",
-                    kind(json)
-                ))
-            });
             // AMCL has no lists, but its file may contain some.
-            let remark = match (value, json) {
-                (Ok(value), _) => parameters.load(&parameter, value),
-                (Err(_), Json::Array(_)) if !parameters.has(&parameter) => Ok(Some(format!(
+            let remark = match (value(json), json) {
+                (Some(value), _) => parameters.load(&parameter, value),
+                (None, Json::Array(_)) if !parameters.has(&parameter) => Ok(Some(format!(
                     "parameter {parameter} is none of AMCL's, and ignored"
                 ))),
-                (Err(error), _) => Err(error),
+                (None, _) => Err(format!(
+                    "{parameter} of {name} is {}: allowed are true, false, numbers and texts",
+                    kind(json)
+                )),
             };
-            let remark = remark.map_err(|error| match error {
-                GatewayError::Parameter { .. } => refuse(error.to_string()),
-                error => error,
-            })?;
-            remarks.extend(remark);
+            remarks.extend(remark.map_err(&refuse)?);
         }
     }
     if !is_there {
@@ -104,7 +84,7 @@ pub(super) fn set(
 type Found<'a> = Vec<(String, &'a Json)>;
 
 /// Collects all nodes below, with their names so far.
-fn find<'a>(json: &'a Json, name: &str, depth: usize, found: &mut Found<'a>) -> Result<(), String> {
+fn find<'a>(json: &'a Json, name: &str, found: &mut Found<'a>) -> Result<(), String> {
     let Json::Object(keys) = json else {
         return match (json, name) {
             (Json::Null, _) => Ok(()),
@@ -114,15 +94,12 @@ fn find<'a>(json: &'a Json, name: &str, depth: usize, found: &mut Found<'a>) -> 
             )),
         };
     };
-    if depth == 0 {
-        return Err(format!("{name:?} goes deeper than {MAX_DEPTH} levels"));
-    }
     for (key, below) in keys {
         if key == PARAMETERS {
             found.push((name.to_owned(), below));
         } else {
             let key = key.trim_matches('/');
-            find(below, &format!("{name}/{key}"), depth - 1, found)?;
+            find(below, &format!("{name}/{key}"), found)?;
         }
     }
     Ok(())
@@ -148,28 +125,19 @@ fn fits(pattern: &[&str], node: &[&str]) -> bool {
     }
 }
 
-fn flatten<'a>(
-    json: &'a Json,
-    name: String,
-    depth: usize,
-    flat: &mut Vec<(String, &'a Json)>,
-) -> Result<(), String> {
+fn flatten<'a>(json: &'a Json, name: String, flat: &mut Vec<(String, &'a Json)>) {
     match json {
-        Json::Object(_) if depth == 0 => {
-            Err(format!("{name:?} goes deeper than {MAX_DEPTH} levels"))
+        Json::Object(keys) => {
+            for (key, below) in keys {
+                let name = match &*name {
+                    "" => key.clone(),
+                    name => format!("{name}.{key}"),
+                };
+                flatten(below, name, flat);
+            }
         }
-        Json::Object(keys) => keys.iter().try_for_each(|(key, below)| {
-            let name = match &*name {
-                "" => key.clone(),
-                name => format!("{name}.{key}"),
-            };
-            flatten(below, name, depth - 1, flat)
-        }),
-        Json::Null => Ok(()),
-        json => {
-            flat.push((name, json));
-            Ok(())
-        }
+        Json::Null => {}
+        json => flat.push((name, json)),
     }
 }
 

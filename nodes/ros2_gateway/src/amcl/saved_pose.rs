@@ -116,10 +116,10 @@ pub(super) fn load(file: &Path, map_frame: &str) -> Result<Option<Pose>, Gateway
 }
 
 fn refused(file: &Path, reason: &dyn std::fmt::Display) -> GatewayError {
-    GatewayError::SavedPose {
-        file: file.display().to_string(),
-        reason: reason.to_string(),
-    }
+    GatewayError::Refused(format!(
+        "the saved pose in {} cannot be used: {reason}",
+        file.display()
+    ))
 }
 
 #[cfg(test)]

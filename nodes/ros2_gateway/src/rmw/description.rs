@@ -66,7 +66,9 @@ impl TypeInfo {
                 name: format!("{}::dds_::{kind}_", before.replace('/', "::")),
                 hash: format!("RIHS01_{hash}"),
             }),
-            _ => Err(GatewayError::UnknownType(name.to_owned())),
+            _ => Err(GatewayError::Refused(format!(
+                "the hash of the type {name} is not known"
+            ))),
         }
     }
 }

@@ -95,12 +95,8 @@ impl Expected {
         let (how, expected) = (judge(&endpoint.info, expected), expected.to_string());
         self.found_as(topic, how);
         (how != Publishing::Expected).then(|| {
-            Seen::Stranger(GatewayError::Stranger {
-                node: node.clone(),
-                topic: topic.clone(),
-                found: endpoint.info.to_string(),
-                expected,
-            })
+            let found = endpoint.info.to_string();
+            Seen::Stranger(GatewayError::stranger(node, topic, &found, &expected))
         })
     }
 

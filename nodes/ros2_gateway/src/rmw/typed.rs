@@ -171,8 +171,7 @@ impl<S: RosService> Service<S> {
         self.calls.serve(report, &mut |request| {
             let (found, most) = (request.len(), MAX_REQUEST_BYTES);
             if found > most {
-                let topic = topic.clone();
-                return Err(GatewayError::TooLong { topic, found, most });
+                return Err(GatewayError::too_long(topic, found, most));
             }
             let request = ros::cdr::decode(request).map_err(GatewayError::decoding(topic))?;
             ros::cdr::encode(&respond(request)).map_err(GatewayError::encoding(topic))

@@ -69,8 +69,5 @@ impl Domain {
 }
 
 fn failed(action: &'static str) -> impl FnOnce(rustdds::dds::CreateError) -> GatewayError {
-    move |error| GatewayError::Dds {
-        action,
-        reason: error.to_string(),
-    }
+    move |error| GatewayError::Refused(format!("cannot {action} the domain of DDS: {error}"))
 }

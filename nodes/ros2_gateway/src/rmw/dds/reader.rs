@@ -91,11 +91,9 @@ impl Reader {
                 identity,
                 related,
             }),
-            Payload::TooLong(found) => Err(GatewayError::TooLong {
-                topic: self.topic.clone(),
-                found,
-                most: self.max_bytes,
-            }),
+            Payload::TooLong(found) => {
+                Err(GatewayError::too_long(&self.topic, found, self.max_bytes))
+            }
         }
     }
 }

@@ -136,12 +136,9 @@ impl Watch {
                 None => expected.note(&endpoint),
                 Some([found, wanted]) => {
                     expected.found_as(&endpoint.topic, Publishing::OtherQuality);
-                    Some(Seen::Stranger(GatewayError::Stranger {
-                        node: endpoint.node,
-                        topic: endpoint.topic,
-                        found,
-                        expected: wanted,
-                    }))
+                    let Endpoint { node, topic, .. } = &endpoint;
+                    let error = GatewayError::stranger(node, topic, &found, &wanted);
+                    Some(Seen::Stranger(error))
                 }
             };
             if seen.is_some() {

@@ -35,10 +35,11 @@ impl Attachment {
                 sent_ns,
                 sender,
             }),
-            Err(_) => Err(GatewayError::Attachment {
-                topic: topic.to_owned(),
-                found: bytes.len(),
-            }),
+            Err(_) => Err(GatewayError::Refused(format!(
+                "the attachment of {topic} has {} bytes: allowed are the 33 of rmw_zenoh \
+                 (sequence number, time, sender)",
+                bytes.len()
+            ))),
         }
     }
 }

@@ -129,11 +129,7 @@ impl Subscription {
         let mut queues = self.queues.iter();
         let (found, most) = queues
             .find_map(|queue| Some((queue.next_too_long()?, queue.limits().message_bytes)))?;
-        Some(GatewayError::TooLong {
-            topic: self.topic.clone(),
-            found,
-            most,
-        })
+        Some(GatewayError::too_long(&self.topic, found, most))
     }
 }
 

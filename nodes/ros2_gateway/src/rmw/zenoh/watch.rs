@@ -72,7 +72,12 @@ impl Discovery for Watch {
                 continue;
             };
             if is_second(&token, &self.node) {
-                return Some(Seen::Stranger(GatewayError::SecondNode(token.node)));
+                return Some(Seen::Stranger(GatewayError::Refused(format!(
+                    "there is a second node {}: both answer its services and publish its \
+                     transform; leave the other one out of the launch file, or give this one \
+                     another --node",
+                    token.node
+                ))));
             }
             let seen = endpoint(token).and_then(|other| expected.note(&other));
             if seen.is_some() {
