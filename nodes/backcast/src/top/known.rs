@@ -1,123 +1,16 @@
-//! State received from the monitor, and its age, at times that are passed in.
+//! State received from the monitor, as it wrote it in JSON, and its age, at times that are passed
+//! in. A field that is missing counts as 0 or empty.
 
 use std::collections::{BTreeMap, VecDeque};
 use std::time::{Duration, Instant};
 
-use geometry::{Covariance, Pose};
-use serde::Deserialize;
+use serde_json::Value;
 
 /// Age after which data counts as missing; scans and poses are more frequent.
 const SILENT_AFTER: Duration = Duration::from_secs(2);
 
 /// Number of latencies kept, which fill a line.
 const LATENCIES: usize = 120;
-
-/// Message of the monitor, with the fields shown here.
-#[derive(Debug, Clone, Deserialize)]
-#[serde(tag = "type", rename_all = "snake_case")]
-pub(super) enum Message {
-    Snapshot(Box<Snapshot>),
-    Answer(Answer),
-    Pose(Box<Tracked>),
-    Map(Map),
-    Node(Node),
-    #[serde(other)]
-    Other,
-}
-
-#[derive(Debug, Clone, Default, Deserialize)]
-#[serde(default)]
-pub(super) struct Snapshot {
-    robot: String,
-    map: Option<Map>,
-    answer: Option<Answer>,
-    pose: Option<Tracked>,
-    ages: Ages,
-    nodes: Vec<Node>,
-}
-
-/// Ages of the monitor's data in seconds; `None` without data.
-#[derive(Debug, Clone, Copy, Default, Deserialize)]
-#[serde(default)]
-struct Ages {
-    scan_s: Option<f64>,
-    pose_s: Option<f64>,
-}
-
-/// The map that is shown; its name is empty if it is the only one.
-#[derive(Debug, Clone, Default, Deserialize)]
-#[serde(default)]
-pub(super) struct Map {
-    map_id: String,
-    name: String,
-}
-
-#[derive(Debug, Clone, Default, Deserialize)]
-#[serde(default)]
-pub(super) struct Answer {
-    map_id: String,
-    pub(super) counter: u64,
-    pub(super) verdict: String,
-    pub(super) says: String,
-    pub(super) latency_ms: f64,
-    pub(super) search_cpu_ms: f64,
-    pub(super) extract_cpu_ms: f64,
-    pub(super) age_ms: f64,
-    pub(super) hypotheses: Vec<Place>,
-}
-
-#[derive(Debug, Clone, Default, Deserialize)]
-#[serde(default)]
-pub(super) struct Tracked {
-    map_id: String,
-    pub(super) counter: u64,
-    pub(super) from_scan: bool,
-    pub(super) state: String,
-    pub(super) says: String,
-    pub(super) laser: Option<Pose>,
-    pub(super) base: Option<Pose>,
-    laser_covariance: Option<[f64; 9]>,
-    base_covariance: Option<[f64; 9]>,
-    pub(super) probability: Option<f64>,
-    pub(super) score: Option<f64>,
-    pub(super) latency_ms: f64,
-    pub(super) age_ms: f64,
-    pub(super) sent_age_ms: f64,
-}
-
-/// Candidate pose: metres and radians in the map.
-#[derive(Debug, Clone, Default, Deserialize)]
-#[serde(default)]
-pub(super) struct Place {
-    pub(super) laser: Pose,
-    /// `None` if the laser's mount is not known.
-    pub(super) base: Option<Pose>,
-    pub(super) score: f64,
-    pub(super) probability: f64,
-}
-
-#[derive(Debug, Clone, Default, Deserialize)]
-#[serde(default)]
-pub(super) struct Node {
-    pub(super) name: String,
-    pub(super) state: String,
-    pub(super) received_hz: f64,
-    pub(super) sent_hz: f64,
-    pub(super) dropped: u64,
-    pub(super) refused: u64,
-    pub(super) restarts: u32,
-    pub(super) last_error: String,
-}
-
-impl Tracked {
-    pub(super) fn covariance(&self) -> Option<Covariance> {
-        let rows = match self.base {
-            Some(_) => self.base_covariance,
-            None => self.laser_covariance,
-        };
-        rows.map(Covariance::from_rows)
-    }
-}
 
 /// Age of data: its age when it was received, plus the time since.
 #[derive(Debug, Clone, Copy)]
@@ -144,54 +37,68 @@ impl Age {
 #[derive(Debug, Default)]
 pub(super) struct Known {
     pub(super) robot: String,
-    map: Option<Map>,
-    pub(super) answer: Option<Answer>,
+    /// The map that is shown; its name is empty if it is the only one.
+    map: Option<Value>,
+    pub(super) answer: Option<Value>,
     /// `None` if the graph has no tracker.
-    pub(super) pose: Option<Tracked>,
+    pub(super) pose: Option<Value>,
     /// Age of the newest answered scan since it entered the graph.
     scan_age: Option<Age>,
     /// Age of the tracker's newest pose since it was sent.
     pose_age: Option<Age>,
-    pub(super) nodes: BTreeMap<String, Node>,
+    pub(super) nodes: BTreeMap<String, Value>,
     pub(super) latencies_ms: VecDeque<f64>,
     pub(super) lost: Option<String>,
 }
 
+pub(super) fn number(of: &Value, key: &str) -> f64 {
+    of[key].as_f64().unwrap_or_default()
+}
+
+pub(super) fn text<'v>(of: &'v Value, key: &str) -> &'v str {
+    of[key].as_str().unwrap_or_default()
+}
+
+/// True if a pose of the tracker is that of a scan; between scans it counts odometry.
+pub(super) fn is_from_scan(pose: &Value) -> bool {
+    pose["from_scan"] == true
+}
+
 impl Known {
-    pub(super) fn receive(&mut self, message: Message, now: Instant) {
-        let age = |seconds: f64| Age::of(seconds, now);
+    pub(super) fn receive(&mut self, message: Value, now: Instant) {
+        let age = |key: &str| Some(Age::of(number(&message, key) / 1e3, now));
         self.lost = None;
-        match message {
-            Message::Snapshot(all) => {
-                self.robot = all.robot;
-                self.map = all.map;
-                self.answer = all.answer;
-                self.pose = all.pose;
-                self.scan_age = all.ages.scan_s.map(age);
-                self.pose_age = all.ages.pose_s.map(age);
-                let nodes = all.nodes.into_iter();
-                self.nodes = nodes.map(|node| (node.name.clone(), node)).collect();
+        match text(&message, "type") {
+            "snapshot" => {
+                let part = |key: &str| Some(message[key].clone()).filter(|part| !part.is_null());
+                self.robot = text(&message, "robot").to_owned();
+                (self.map, self.answer, self.pose) = (part("map"), part("answer"), part("pose"));
+                let age = |key: &str| Some(Age::of(message["ages"][key].as_f64()?, now));
+                (self.scan_age, self.pose_age) = (age("scan_s"), age("pose_s"));
+                let nodes = message["nodes"].as_array().into_iter().flatten().cloned();
+                self.nodes = nodes.map(named).collect();
             }
-            Message::Answer(answer) => {
-                self.scan_age = Some(age(answer.age_ms / 1e3));
+            "answer" => {
+                self.scan_age = age("age_ms");
                 if self.pose.is_none() {
-                    self.took(answer.latency_ms);
+                    self.took(number(&message, "latency_ms"));
                 }
-                self.answer = Some(answer);
+                self.answer = Some(message);
             }
-            Message::Pose(pose) => {
-                if pose.from_scan {
-                    self.scan_age = Some(age(pose.age_ms / 1e3));
-                    self.took(pose.latency_ms);
+            "pose" => {
+                if is_from_scan(&message) {
+                    self.scan_age = age("age_ms");
+                    self.took(number(&message, "latency_ms"));
                 }
-                self.pose_age = Some(age(pose.sent_age_ms / 1e3));
-                self.pose = Some(*pose);
+                self.pose_age = age("sent_age_ms");
+                self.pose = Some(message);
             }
-            Message::Map(map) => self.map = Some(map),
-            Message::Node(node) => {
-                self.nodes.insert(node.name.clone(), node);
+            "map" => self.map = Some(message),
+            "node" => {
+                let (name, node) = named(message);
+                self.nodes.insert(name, node);
             }
-            Message::Other => {}
+            _ => {}
         }
     }
 
@@ -206,15 +113,10 @@ impl Known {
 
     /// Returns the name of the map of the pose, if there are several and it is the one shown.
     pub(super) fn map_name(&self) -> Option<&str> {
-        let tracked = self.pose.as_ref().map(|pose| &pose.map_id);
-        let map_id = tracked.or(self.answer.as_ref().map(|answer| &answer.map_id))?;
-        let map = self.map.as_ref().filter(|map| map.map_id == *map_id)?;
-        Some(&*map.name).filter(|name| !name.is_empty())
-    }
-
-    /// True if the state shown is a scan's; between scans the tracker counts odometry.
-    pub(super) fn is_of_scan(&self) -> bool {
-        self.pose.as_ref().is_none_or(|pose| pose.from_scan)
+        let shown = self.pose.as_ref().or(self.answer.as_ref())?;
+        let map = self.map.as_ref()?;
+        let name = text(map, "name");
+        (map["map_id"] == shown["map_id"] && !name.is_empty()).then_some(name)
     }
 
     fn took(&mut self, latency_ms: f64) {
@@ -223,6 +125,10 @@ impl Known {
         }
         self.latencies_ms.push_back(latency_ms);
     }
+}
+
+fn named(node: Value) -> (String, Value) {
+    (text(&node, "name").to_owned(), node)
 }
 
 #[cfg(test)]
@@ -242,7 +148,7 @@ mod tests {
         }
         assert_eq!(known.robot, "r");
         assert_eq!(known.nodes.keys().collect::<Vec<_>>(), ["a", "b"]);
-        assert_eq!(known.answer.unwrap().counter, 7);
+        assert_eq!(known.answer.unwrap()["counter"], 7);
         assert_eq!(known.latencies_ms, [20.5]);
     }
 

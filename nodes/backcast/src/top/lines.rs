@@ -2,11 +2,13 @@
 
 use std::time::Instant;
 
-use geometry::{ANGLE_95, ELLIPSE_95};
+use geometry::{ANGLE_95, Covariance, ELLIPSE_95, Pose};
 use ratatui::style::{Color, Style, Stylize};
 use ratatui::text::{Line, Span, Text};
+use serde::Deserialize;
+use serde_json::Value;
 
-use super::known::{Answer, Known, Node, Place, Tracked};
+use super::known::{Known, is_from_scan, number, text as word};
 
 const PLACES: usize = 5;
 
@@ -21,17 +23,20 @@ pub(super) fn text(known: &Known, now: Instant) -> Text<'static> {
         None => lines.push(Line::from("no scan has been answered yet")),
         Some(answer) => {
             let verdict = match known.pose {
-                Some(_) => format!("This scan alone, {}: ", answer.verdict),
+                Some(_) => format!("This scan alone, {}: ", word(answer, "verdict")),
                 None => String::new(),
             };
-            lines.push(Line::from(format!("{verdict}{}.", answer.says)));
+            lines.push(Line::from(format!("{verdict}{}.", word(answer, "says"))));
             lines.push(Line::default());
-            let is_base = answer.hypotheses.iter().any(|place| place.base.is_some());
+            let places = answer["hypotheses"]
+                .as_array()
+                .map_or(&[][..], Vec::as_slice);
+            let is_base = places.iter().any(|place| !place["base"].is_null());
             let [x, y] = ["x", "y"].map(|axis| format!("{} {axis} m", frame(is_base)));
             lines.push(head(format!(
                 "   place  {x:>9} {y:>9}  heading deg  score  probability"
             )));
-            let places = answer.hypotheses.iter().take(PLACES).enumerate();
+            let places = places.iter().take(PLACES).enumerate();
             lines.extend(places.map(|(at, place)| place_line(at, place)));
             lines.push(Line::default());
             lines.extend(timing(known, answer));
@@ -57,9 +62,12 @@ pub(super) fn plain(known: &Known, now: Instant) -> String {
 
 fn title(known: &Known, now: Instant) -> Line<'static> {
     let silence = known.silence(now);
-    let (state, counter) = match (&known.pose, &known.answer) {
-        (Some(pose), _) => (&*pose.state, Some(pose.counter)),
-        (None, Some(answer)) => (&*answer.verdict, Some(answer.counter)),
+    let (state, scan) = match (&known.pose, &known.answer) {
+        (Some(pose), _) => (
+            word(pose, "state"),
+            Some(pose).filter(|pose| is_from_scan(pose)),
+        ),
+        (None, Some(answer)) => (word(answer, "verdict"), Some(answer)),
         (None, None) => ("", None),
     };
     let color = match &silence {
@@ -72,7 +80,8 @@ fn title(known: &Known, now: Instant) -> Line<'static> {
         Span::from("  "),
         Span::from(state.to_owned()).fg(color).bold(),
     ];
-    if let Some(counter) = counter.filter(|_| known.is_of_scan()) {
+    if let Some(scan) = scan {
+        let counter = number(scan, "counter");
         spans.push(Span::from(format!("  scan {counter}")).dim());
     }
     if let Some(name) = known.map_name() {
@@ -97,25 +106,28 @@ fn color_of(state: &str) -> Color {
     }
 }
 
-fn pose_lines(pose: &Tracked) -> Vec<Line<'static>> {
-    let mut lines = vec![Line::from(format!("{}.", pose.says))];
-    if let Some(shown) = pose.base.or(pose.laser) {
-        let is_base = pose.base.is_some();
-        let spread = pose.covariance().map_or(String::new(), |covariance| {
+fn pose_lines(tracked: &Value) -> Vec<Line<'static>> {
+    let mut lines = vec![Line::from(format!("{}.", word(tracked, "says")))];
+    let base = Pose::deserialize(&tracked["base"]).ok();
+    let laser = || Pose::deserialize(&tracked["laser"]).ok();
+    if let Some(shown) = base.or_else(laser) {
+        let frame = frame(base.is_some());
+        let rows = <[f64; 9]>::deserialize(&tracked[format!("{frame}_covariance")]);
+        let spread = rows.map_or(String::new(), |rows| {
+            let covariance = Covariance::from_rows(rows);
             let m = ELLIPSE_95 * covariance.ellipse().major_m;
             let deg = ANGLE_95 * covariance.to_rows()[8].max(0.0).sqrt().to_degrees();
             format!(" +- {m:.3} m, {deg:.2} deg (95 %)")
         });
         let text = format!(
-            "{}: x {:.3} m, y {:.3} m, heading {:.2} deg{spread}",
-            frame(is_base),
+            "{frame}: x {:.3} m, y {:.3} m, heading {:.2} deg{spread}",
             shown.x,
             shown.y,
             shown.yaw.to_degrees()
         );
         lines.push(Line::from(text.bold()));
-        let share = 100.0 * pose.probability.unwrap_or_default();
-        let score = pose.score.unwrap_or_default();
+        let share = 100.0 * number(tracked, "probability");
+        let score = number(tracked, "score");
         let text = format!("probability {share:.1} %, score {score:.2}");
         lines.push(Line::from(text));
     }
@@ -132,21 +144,17 @@ fn head(text: impl Into<String>) -> Line<'static> {
     Line::from(text.into().dim())
 }
 
-fn place_line(at: usize, place: &Place) -> Line<'static> {
-    let Place {
-        laser,
-        base,
-        score,
-        probability,
-    } = place;
-    let shown = base.unwrap_or(*laser);
+fn place_line(at: usize, place: &Value) -> Line<'static> {
+    let shown = Pose::deserialize(&place["base"]).or_else(|_| Pose::deserialize(&place["laser"]));
+    let shown = shown.unwrap_or_default();
     let text = format!(
-        "{:>8}  {:>9.3} {:>9.3}  {:>11.2}  {score:>5.2}  {:>9.1} %",
+        "{:>8}  {:>9.3} {:>9.3}  {:>11.2}  {:>5.2}  {:>9.1} %",
         at + 1,
         shown.x,
         shown.y,
         shown.yaw.to_degrees(),
-        100.0 * probability,
+        number(place, "score"),
+        100.0 * number(place, "probability"),
     );
     let style = match at {
         0 => Style::new().bold(),
@@ -155,46 +163,47 @@ fn place_line(at: usize, place: &Place) -> Line<'static> {
     Line::styled(text, style)
 }
 
-fn timing(known: &Known, answer: &Answer) -> [Line<'static>; 2] {
+fn timing(known: &Known, answer: &Value) -> [Line<'static>; 2] {
     let highest = known.latencies_ms.iter().copied().fold(1.0, f64::max);
     let bar = |ms: &f64| {
         let step = (ms / highest * 7.0).round().clamp(0.0, 7.0) as usize;
         BARS[step]
     };
     let bars: String = known.latencies_ms.iter().map(bar).collect();
-    let newest = known.latencies_ms.back();
+    let newest = known.latencies_ms.back().copied();
     let text = format!(
         "scan to pose {:.1} ms: search {:.1} ms, fit {:.1} ms",
-        newest.copied().unwrap_or(answer.latency_ms),
-        answer.search_cpu_ms,
-        answer.extract_cpu_ms
+        newest.unwrap_or_else(|| number(answer, "latency_ms")),
+        number(answer, "search_cpu_ms"),
+        number(answer, "extract_cpu_ms")
     );
     [Line::from(text), Line::from(bars.fg(Color::Cyan))]
 }
 
-fn node_lines(node: &Node) -> Vec<Line<'static>> {
-    let color = match node.state.as_str() {
+fn node_lines(node: &Value) -> Vec<Line<'static>> {
+    let (name, state) = (word(node, "name"), word(node, "state"));
+    let [received_hz, sent_hz, dropped, refused, restarts] =
+        ["received_hz", "sent_hz", "dropped", "refused", "restarts"].map(|key| number(node, key));
+    let color = match state {
         "ready" => Color::Green,
         "silent" => Color::Red,
         "degraded" => Color::Yellow,
         _ => Color::Gray,
     };
-    let counts = format!(
-        "{:>6.1}  {:>6.1}  {:>5}  {:>7}  {:>8}",
-        node.received_hz, node.sent_hz, node.dropped, node.refused, node.restarts
-    );
+    let counts =
+        format!("{received_hz:>6.1}  {sent_hz:>6.1}  {dropped:>5}  {refused:>7}  {restarts:>8}");
     let mut lines = vec![Line::from(vec![
-        Span::from(format!("   {:<20}  ", node.name)),
-        Span::from(format!("{:<9}", node.state)).fg(color),
+        Span::from(format!("   {name:<20}  ")),
+        Span::from(format!("{state:<9}")).fg(color),
         Span::from(counts),
     ])];
-    if !node.last_error.is_empty() {
-        let (past, color) = match node.state.as_str() {
+    let error = word(node, "last_error");
+    if !error.is_empty() {
+        let (past, color) = match state {
             "ready" => ("earlier: ", Color::DarkGray),
             _ => ("", Color::Yellow),
         };
-        let error = format!("     {past}{}", node.last_error);
-        lines.push(Line::from(error).fg(color));
+        lines.push(Line::from(format!("     {past}{error}")).fg(color));
     }
     lines
 }
@@ -202,7 +211,6 @@ fn node_lines(node: &Node) -> Vec<Line<'static>> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::top::known::Message;
 
     fn known(messages: &[&str]) -> Known {
         let mut known = Known::default();
@@ -248,7 +256,7 @@ mod tests {
         let mut known = known(&[]);
         known.lost = Some("it is gone".to_owned());
         assert!(plain(&known, Instant::now()).contains("DISCONNECTED: it is gone"));
-        known.receive(Message::Other, Instant::now());
+        known.receive(Value::Null, Instant::now());
         assert!(!plain(&known, Instant::now()).contains("DISCONNECTED"));
     }
 

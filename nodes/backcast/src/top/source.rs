@@ -7,9 +7,10 @@ use std::time::{Duration, Instant};
 
 use anyhow::{Context, anyhow};
 use serde::Deserialize;
+use serde_json::Value;
 use tungstenite::client;
 
-use super::known::{Known, Message};
+use super::known::Known;
 
 /// Largest number of messages queued for the screen; the monitor queues more.
 const WAITING: usize = 256;
@@ -19,7 +20,7 @@ const PAUSE: Duration = Duration::from_secs(1);
 /// Timeout of the monitor: its nodes report every second.
 const TIMEOUT: Duration = Duration::from_secs(5);
 
-pub(super) type Update = Result<Message, String>;
+pub(super) type Update = Result<Value, String>;
 
 pub(super) fn find(address: &str, robot: Option<&str>) -> anyhow::Result<String> {
     #[derive(Deserialize)]
