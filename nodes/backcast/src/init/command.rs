@@ -101,7 +101,7 @@ pub(crate) fn run(config: &Config) -> anyhow::Result<ExitCode> {
     stdout::print(&format!(
         "{file}: {source}\n\nbackcast check {file}\nbackcast run {file}\n",
         file = config.out.display(),
-        source = source.title(),
+        source = source.title,
     ))?;
     Ok(ExitCode::SUCCESS)
 }
@@ -131,7 +131,7 @@ fn source(config: &Config, played: Option<(&Path, &Recording)>) -> anyhow::Resul
                  until --mount is given",
             );
         }
-        return Ok(Source::Laser { options, mount });
+        return Ok(Source::laser(&options, mount.as_deref()));
     }
     if let Some(router) = &config.ros2 {
         let mut seen = Robot::default();
@@ -148,13 +148,8 @@ fn source(config: &Config, played: Option<(&Path, &Recording)>) -> anyhow::Resul
                 say(robot::NO_MAP);
             }
         }
-        return Ok(Source::Ros2 {
-            router: router.clone(),
-            options: seen.options,
-            scans: seen.scans,
-            mount,
-            brings_map: !has_map,
-        });
+        let (router, mount) = (router.as_deref(), mount.as_deref());
+        return Ok(Source::robot(&seen, router, mount, !has_map));
     }
     if mount.is_some() {
         let reason = "--mount is not for a recording, whose /tf_static says where its laser sits";
@@ -165,10 +160,7 @@ fn source(config: &Config, played: Option<(&Path, &Recording)>) -> anyhow::Resul
     let has_odometry = recording
         .topic(Kind::Odometry)
         .is_ok_and(|topic| topic.is_some());
-    Ok(Source::Recording {
-        file: absolute(file)?,
-        has_odometry,
-    })
+    Ok(Source::recording(&absolute(file)?, has_odometry))
 }
 
 /// Returns the options that the laser answers to, or those of its factory settings.
