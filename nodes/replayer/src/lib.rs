@@ -1,11 +1,10 @@
 //! Node `replayer`: plays a recording as `scan`, `odometry` and `ground_truth`.
 //!
-//! `replay` schedules the messages; `pause`, which is pure, handles pauses. `run` reads the clock,
-//! waits and sends. Readings are passed on as recorded, even if they are invalid.
+//! `ros_graph::replay` schedules the messages; `run` reads the clock, waits, pauses and sends.
+//! Readings are passed on as recorded, even if they are invalid.
 
 mod config;
 mod error;
-mod pause;
 mod run;
 
 pub use config::Config;

@@ -21,7 +21,6 @@ use ros_graph::replay::{
 };
 use transport::{Flow, Graph, Input, Subscriber, monotonic_ns, with_causes};
 
-use crate::pause::Pause;
 use crate::{Config, ReplayerError};
 
 /// Longest time between checks of answers, signals and health.
@@ -52,7 +51,6 @@ pub fn run(graph: &Graph, config: &Config) -> Result<ExitCode, ReplayerError> {
         items: InOrder::new(Source::new(&recording, channels.clone(), selection.clone())),
         channels,
         selection,
-        pause: Pause::new(config.pause),
         keyboard: listen(config.pause)?,
         config,
         gap_ns,
@@ -140,7 +138,6 @@ struct Player<'r> {
     recording: &'r Recording,
     channels: Channels,
     selection: Selection,
-    pause: Pause,
     keyboard: Option<Keyboard>,
     config: &'r Config,
     /// Mean time between two scans of the recording.
@@ -170,21 +167,26 @@ impl Player<'_> {
                 self.schedule.answered(stamp);
             }
             self.outlet.health.tick()?;
-            match self
-                .keyboard
-                .as_ref()
-                .map(|keyboard| keyboard.take(&mut self.pause))
-            {
-                Some(KeyPress::Quit) => return Ok(Flow::Stop),
-                Some(KeyPress::Resumed) => self.schedule.resume(),
-                Some(KeyPress::Nothing) | None => {}
-            }
-            if self.pause.is_paused() && self.pending.is_some() {
-                if !self.pause.may_step() {
-                    return Ok(Flow::Continue);
+            if let Some(keyboard) = &mut self.keyboard {
+                match keyboard.take() {
+                    KeyPress::Quit => return Ok(Flow::Stop),
+                    KeyPress::Resumed => self.schedule.resume(),
+                    KeyPress::Nothing => {}
                 }
-                self.step_on()?;
-                continue;
+                if keyboard.is_paused
+                    && let Some(pending) = &self.pending
+                {
+                    if keyboard.steps == 0 {
+                        return Ok(Flow::Continue);
+                    }
+                    if pending.is_scan() {
+                        tracing::info!("scan of {:.3} s", pending.stamp_ns() as f64 * 1e-9);
+                        keyboard.steps -= 1;
+                    }
+                    // Sent before its time.
+                    self.send()?;
+                    continue;
+                }
             }
             let pending_ns = self.pending.as_ref().map(|timed| timed.log_time_ns);
             let now_ns = monotonic_ns();
@@ -206,15 +208,6 @@ impl Player<'_> {
             }
         }
         Ok(Flow::Continue)
-    }
-
-    /// Sends the next message before its time.
-    fn step_on(&mut self) -> Result<(), ReplayerError> {
-        if let Some(scan) = self.pending.as_ref().filter(|item| item.is_scan()) {
-            tracing::info!("scan of {:.3} s", scan.stamp_ns() as f64 * 1e-9);
-            self.pause.stepped();
-        }
-        self.send()
     }
 
     fn send(&mut self) -> Result<(), ReplayerError> {
