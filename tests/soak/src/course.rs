@@ -24,7 +24,7 @@ use super::launched::{Launched, Losses, Printed, signal};
 use super::maps::Maps;
 use super::recorded::Recorded;
 use super::report::Report;
-use super::tally::{Gap, Tally};
+use super::tally::Tally;
 use super::usage::Usage;
 
 /// Timeout for the first Unique pose, and for a pose after a fault.
@@ -320,14 +320,12 @@ impl Course {
         let record = self.plan.record.as_deref();
         let recorded = record.map(|file| Recorded::read(file, &mut self.failures));
         let left = files_of(&self.plan.graph).into_iter();
-        let (poses, faults) = self.tally.figures();
         Ok(Report {
             seconds,
             seed: self.plan.seed,
-            poses,
+            tally: self.tally,
             losses: self.losses,
-            faults,
-            nodes_ended_s: Gap::of(&self.nodes_ended_s),
+            nodes_ended_s: self.nodes_ended_s,
             restarts,
             usage: self.usage,
             recorded,

@@ -110,14 +110,4 @@ mod tests {
         assert_eq!(faults.map(times), [8, 4, 1]);
         assert_eq!(Draw::new(&[], 1).fault(), None);
     }
-
-    #[test]
-    fn two_that_are_drawn_are_different() {
-        let mut draw = Draw::new(&[], 1);
-        for _ in 0..20 {
-            let two = draw.some_of(&[1, 2, 3], 2);
-            assert!(two.len() == 2 && two[0] != two[1], "{two:?}");
-        }
-        assert_eq!(draw.some_of(&[1], 2), [&1]);
-    }
 }

@@ -130,29 +130,3 @@ fn not_started(source: io::Error) -> anyhow::Error {
     let text = "cannot start, signal or wait for the processes of the graph";
     anyhow::Error::new(source).context(text)
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn poses_and_the_summary_are_read_from_what_run_prints() {
-        let row = r#"{"verdict":"Unique","pose":{"stamp_ns":5,"state":"Unique",
-            "laser":{"x":1.5,"y":-2.0,"yaw":3.0},"latency_ms":2.5,"sent_ns":7000000}}"#;
-        let printed: Printed = serde_json::from_str(row).unwrap();
-        let pose = printed.pose.unwrap();
-        assert_eq!(pose.entered_ns(), 4_500_000);
-        assert_eq!(pose.laser, Some(Pose::new(1.5, -2.0, 3.0)));
-        let row = r#"{"stamp_ns":5,"pose":null}"#;
-        assert!(serde_json::from_str::<Printed>(row).unwrap().pose.is_none());
-        let row = r#"{"summary":{"scans":9,"answered":8,"searched":3,"dropped":1,"refused":0}}"#;
-        let summary = serde_json::from_str::<Printed>(row).unwrap().summary;
-        let expected = Losses {
-            scans: 9,
-            answered: 8,
-            dropped: 1,
-            refused: 0,
-        };
-        assert_eq!(summary, Some(expected));
-    }
-}

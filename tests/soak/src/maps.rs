@@ -61,38 +61,3 @@ fn larger(grid: &OccupancyGrid) -> Result<OccupancyGrid, MapError> {
     let origin = grid.map_from_grid.then(Pose::new(back, back, 0.0));
     OccupancyGrid::from_parts(width, height, grid.resolution_m, origin, cells)
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn both_maps_show_the_same_place() {
-        let folder = tempfile::tempdir().unwrap();
-        let yaml = folder.path().join("given.yaml");
-        let grid = OccupancyGrid::from_parts(
-            3,
-            2,
-            0.5,
-            Pose::new(10.0, -3.0, std::f64::consts::FRAC_PI_2),
-            vec![0, 100, 0, UNKNOWN, 0, 100],
-        )
-        .unwrap();
-        map::save(&grid, &yaml).unwrap();
-        let mut maps = Maps::new(&yaml, folder.path()).unwrap();
-        assert_eq!(map::load(maps.served()).unwrap(), grid);
-        maps.swap().unwrap();
-        let other = map::load(maps.served()).unwrap();
-        assert_ne!(other.id(), grid.id());
-        for (x, y) in [(0, 0), (1, 0), (2, 1)] {
-            let (x_m, y_m) = grid.cell_center(x, y);
-            let at = |grid: &OccupancyGrid| {
-                let (x, y) = grid.cell_at(x_m, y_m).unwrap();
-                grid.cells[(y * grid.width + x) as usize]
-            };
-            assert_eq!(at(&other), at(&grid));
-        }
-        maps.swap().unwrap();
-        assert_eq!(map::load(maps.served()).unwrap(), grid);
-    }
-}

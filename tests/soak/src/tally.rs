@@ -3,10 +3,10 @@
 use std::collections::BTreeMap;
 use std::time::Duration;
 
-use answers::statistics::{Distribution, SUCCESS, Tail};
+use answers::statistics::{Distribution, SUCCESS};
 use geometry::Pose;
 use messages::TrackState;
-use serde::Serialize;
+use serde::{Serialize, Serializer};
 
 use super::fault::Fault;
 use super::launched::SentPose;
@@ -19,29 +19,44 @@ const MAX_WRONG_LISTED: usize = 20;
 const WINDOW: usize = 1_000_000;
 const NS_PER_S: f64 = 1e9;
 
-#[derive(Debug)]
+/// Figures of a run so far, which are a part of its report.
+#[derive(Debug, Serialize)]
 pub(super) struct Tally {
+    #[serde(skip)]
     truths: BTreeMap<i64, Pose>,
+    #[serde(skip)]
     begin_ns: i64,
+    #[serde(skip)]
     planned: Duration,
-    /// Without the latency.
-    figures: PoseFigures,
+    /// Number of poses of scans, in any state.
+    poses: u64,
+    /// Number of poses with a position and a known truth.
+    judged: u64,
+    /// Number of judged poses that were Unique.
+    unique: u64,
+    /// Number of Unique poses beyond 0.5 m or 10°.
+    pub(super) wrong: u64,
+    first_wrong: Vec<Wrong>,
+    /// Latency from the scan's entry into the graph to its pose, for each tenth of the run.
+    #[serde(serialize_with = "tails")]
     latency_ms: Vec<Distribution>,
+    faults: Vec<FaultEffect>,
     /// Faults from which the graph has not fully recovered.
+    #[serde(skip)]
     open: Vec<Open>,
-    faults: BTreeMap<Fault, FaultEffect>,
     /// Time from the end of the last fault to the next pose, in seconds.
+    #[serde(skip)]
     last_gap_s: f64,
 }
 
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub(super) struct Wrong {
+struct Wrong {
     /// Stamp of its scan, in nanoseconds since 1970.
-    pub(super) stamp_ns: i64,
+    stamp_ns: i64,
     /// Time at which it was sent, in seconds after the start.
-    pub(super) after_s: f64,
-    pub(super) off_m: f64,
-    pub(super) off_deg: f64,
+    after_s: f64,
+    off_m: f64,
+    off_deg: f64,
 }
 
 #[derive(Debug, Clone, Copy)]
@@ -52,45 +67,28 @@ struct Open {
     any: bool,
 }
 
-#[derive(Debug)]
+#[derive(Debug, Serialize)]
 struct FaultEffect {
+    fault: Fault,
     times: u64,
+    /// Number of processes of nodes that it killed.
     killed: u64,
+    /// Time from the end of the fault to a pose of a later scan, in seconds.
+    #[serde(serialize_with = "gap")]
     to_pose_s: Distribution,
+    /// Time from the end of the fault to a Unique pose of a later scan, in seconds.
+    #[serde(serialize_with = "gap")]
     to_unique_s: Distribution,
 }
 
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub(super) struct FaultFigures {
-    pub(super) fault: Fault,
-    pub(super) times: u64,
-    /// Number of processes of nodes that it killed.
-    pub(super) killed: u64,
-    /// Time from the end of the fault to a pose of a later scan, in seconds.
-    pub(super) to_pose_s: Gap,
-    /// Time from the end of the fault to a Unique pose of a later scan, in seconds.
-    pub(super) to_unique_s: Gap,
+/// Writes median and maximum of times in seconds.
+pub(super) fn gap<S: Serializer>(seconds: &Distribution, to: S) -> Result<S::Ok, S::Error> {
+    let [median, max] = seconds.percentiles([50.0, 100.0]);
+    BTreeMap::from([("median", median), ("max", max)]).serialize(to)
 }
 
-#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
-pub(super) struct Gap {
-    pub(super) median: Option<f64>,
-    pub(super) max: Option<f64>,
-}
-
-#[derive(Debug, Clone, Default, PartialEq, Serialize)]
-pub(super) struct PoseFigures {
-    /// Number of poses of scans, in any state.
-    pub(super) poses: u64,
-    /// Number of poses with a position and a known truth.
-    pub(super) judged: u64,
-    /// Number of judged poses that were Unique.
-    pub(super) unique: u64,
-    /// Number of Unique poses beyond 0.5 m or 10°.
-    pub(super) wrong: u64,
-    pub(super) first_wrong: Vec<Wrong>,
-    /// Latency from the scan's entry into the graph to its pose, for each tenth of the run.
-    pub(super) latency_ms: Vec<Tail>,
+fn tails<S: Serializer>(all: &[Distribution], to: S) -> Result<S::Ok, S::Error> {
+    to.collect_seq(all.iter().map(Distribution::tail))
 }
 
 impl Tally {
@@ -100,24 +98,34 @@ impl Tally {
             truths,
             begin_ns: now_ns,
             planned,
-            figures: PoseFigures::default(),
+            poses: 0,
+            judged: 0,
+            unique: 0,
+            wrong: 0,
+            first_wrong: Vec::new(),
             latency_ms: vec![Distribution::new(WINDOW); PARTS],
             open: Vec::new(),
-            faults: BTreeMap::new(),
+            faults: Vec::new(),
             last_gap_s: 0.0,
         }
     }
 
     /// Adds a fault that ended at `over_ns` and killed this many processes of nodes.
     pub(super) fn suffered(&mut self, fault: Fault, killed: usize, over_ns: i64) {
-        let effect = self.faults.entry(fault).or_insert_with(|| FaultEffect {
-            times: 0,
-            killed: 0,
-            to_pose_s: Distribution::new(WINDOW),
-            to_unique_s: Distribution::new(WINDOW),
-        });
-        effect.times += 1;
-        effect.killed += killed as u64;
+        if self.faults.iter().all(|effect| effect.fault != fault) {
+            self.faults.push(FaultEffect {
+                fault,
+                times: 0,
+                killed: 0,
+                to_pose_s: Distribution::new(WINDOW),
+                to_unique_s: Distribution::new(WINDOW),
+            });
+        }
+        let effects = self.faults.iter_mut();
+        for effect in effects.filter(|effect| effect.fault == fault) {
+            effect.times += 1;
+            effect.killed += killed as u64;
+        }
         self.open.push(Open {
             fault,
             over_ns,
@@ -126,7 +134,7 @@ impl Tally {
     }
 
     pub(super) fn pose(&mut self, pose: &SentPose) {
-        self.figures.poses += 1;
+        self.poses += 1;
         let since_s = self.since_s(pose.sent_ns);
         let part = since_s / self.planned.as_secs_f64() * PARTS as f64;
         // Poses after the planned end belong to the last part.
@@ -142,18 +150,18 @@ impl Tally {
         let (Some(truth), Some(found)) = (truth, pose.laser) else {
             return;
         };
-        self.figures.judged += 1;
+        self.judged += 1;
         if !is_unique {
             return;
         }
-        self.figures.unique += 1;
+        self.unique += 1;
         let (metres, degrees) = SUCCESS;
         if truth.is_within(found, metres, degrees.to_radians()) {
             return;
         }
-        self.figures.wrong += 1;
-        if self.figures.first_wrong.len() < MAX_WRONG_LISTED {
-            self.figures.first_wrong.push(Wrong {
+        self.wrong += 1;
+        if self.first_wrong.len() < MAX_WRONG_LISTED {
+            self.first_wrong.push(Wrong {
                 stamp_ns: pose.stamp_ns,
                 after_s: self.since_s(pose.sent_ns),
                 off_m: truth.distance_to(found),
@@ -167,7 +175,7 @@ impl Tally {
         let (faults, entered_ns) = (&mut self.faults, pose.entered_ns());
         let last_gap_s = &mut self.last_gap_s;
         self.open.retain_mut(|open| {
-            let effect = faults.get_mut(&open.fault);
+            let effect = faults.iter_mut().find(|effect| effect.fault == open.fault);
             let (true, Some(effect)) = (open.over_ns <= entered_ns, effect) else {
                 return true;
             };
@@ -195,26 +203,11 @@ impl Tally {
 
     /// True if a Unique pose came since every fault.
     pub(super) fn is_sure(&self) -> bool {
-        self.figures.unique > 0 && self.open.is_empty()
+        self.unique > 0 && self.open.is_empty()
     }
 
     pub(super) fn not_overcome(&self) -> Vec<Fault> {
         self.open.iter().map(|open| open.fault).collect()
-    }
-
-    pub(super) fn figures(&self) -> (PoseFigures, Vec<FaultFigures>) {
-        let poses = PoseFigures {
-            latency_ms: self.latency_ms.iter().map(Distribution::tail).collect(),
-            ..self.figures.clone()
-        };
-        let faults = self.faults.iter().map(|(fault, effect)| FaultFigures {
-            fault: *fault,
-            times: effect.times,
-            killed: effect.killed,
-            to_pose_s: Gap::of(&effect.to_pose_s),
-            to_unique_s: Gap::of(&effect.to_unique_s),
-        });
-        (poses, faults.collect())
     }
 
     fn since_s(&self, at_ns: i64) -> f64 {
@@ -222,15 +215,10 @@ impl Tally {
     }
 }
 
-impl Gap {
-    pub(super) fn of(seconds: &Distribution) -> Self {
-        let [median, max] = seconds.percentiles([50.0, 100.0]);
-        Gap { median, max }
-    }
-}
-
 #[cfg(test)]
 mod tests {
+    use serde_json::json;
+
     use super::*;
 
     const SECOND: i64 = 1_000_000_000;
@@ -258,16 +246,15 @@ mod tests {
         tally.pose(&pose(1, 2, 3.0, TrackState::Unique));
         tally.pose(&pose(2, 3, 3.0, TrackState::Doubtful));
         tally.pose(&pose(3, 4, 9.0, TrackState::Unique));
-        let (poses, _) = tally.figures();
-        let counts = (poses.poses, poses.judged, poses.unique, poses.wrong);
-        assert_eq!(counts, (4, 3, 2, 1));
+        let counts = [tally.poses, tally.judged, tally.unique, tally.wrong];
+        assert_eq!(counts, [4, 3, 2, 1]);
         let expected = Wrong {
             stamp_ns: 1,
             after_s: 2.5,
             off_m: 3.0,
             off_deg: 0.0,
         };
-        assert_eq!(poses.first_wrong, [expected]);
+        assert_eq!(tally.first_wrong, [expected]);
     }
 
     #[test]
@@ -283,19 +270,15 @@ mod tests {
         tally.suffered(Fault::Kill, 1, 12 * SECOND);
         tally.pose(&pose(1, 13, 0.0, TrackState::Unique));
         assert!(tally.is_sure());
-        let (_, faults) = tally.figures();
-        let gap = |median, max| Gap {
-            median: Some(median),
-            max: Some(max),
-        };
-        let expected = FaultFigures {
-            fault: Fault::Kill,
-            times: 2,
-            killed: 2,
-            to_pose_s: gap(1.5, 1.5),
-            to_unique_s: gap(1.5, 3.5),
-        };
-        assert_eq!(faults, [expected]);
+        let report = serde_json::to_value(&tally).unwrap();
+        let expected = json!([{
+            "fault": "kill",
+            "times": 2,
+            "killed": 2,
+            "to_pose_s": {"median": 1.5, "max": 1.5},
+            "to_unique_s": {"median": 1.5, "max": 3.5},
+        }]);
+        assert_eq!(report["faults"], expected);
     }
 
     #[test]
@@ -305,9 +288,9 @@ mod tests {
         let mut late = pose(1, 200, 0.0, TrackState::Unique);
         late.latency_ms = 7.0;
         tally.pose(&late);
-        let (poses, _) = tally.figures();
-        let medians: Vec<_> = poses.latency_ms.iter().map(|part| part.median).collect();
-        assert_eq!((medians[0], medians[1]), (Some(500.0), None));
-        assert_eq!(medians[PARTS - 1], Some(7.0), "after the planned end");
+        let report = serde_json::to_value(&tally).unwrap();
+        let medians = |part: usize| &report["latency_ms"][part]["median"];
+        assert_eq!((medians(0), medians(1)), (&json!(500.0), &json!(null)));
+        assert_eq!(medians(PARTS - 1), 7.0, "after the planned end");
     }
 }

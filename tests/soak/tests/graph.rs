@@ -34,4 +34,5 @@ fn a_graph_under_faults_meets_its_guarantees() {
     let killed = faults.iter().filter_map(|effect| effect["killed"].as_u64());
     assert!(killed.sum::<u64>() > 5, "{report}");
     assert!(report["judged"].as_u64() > Some(50), "{report}");
+    assert!(report["answered"].as_u64() > Some(0), "{report}");
 }
