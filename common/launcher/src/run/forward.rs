@@ -13,7 +13,7 @@ use ros::lasers::name_of;
 use super::arguments::{
     ACCUMULATOR, MAP_SERVER, PLAYERS, find, leave_out_monitors, name_robot, set, unset, value,
 };
-use super::options::{Options, Rate};
+use super::options::{MAX_RATE, Options};
 use super::{lasers, replay};
 use crate::descriptor::NO_FOLDER;
 
@@ -55,9 +55,9 @@ pub(crate) fn apply(options: &Options, dataflow: &mut Dataflow, file: &Path) -> 
         }
         set(node, MAPS, Some(&maps.to_string_lossy()));
     }
-    if let Some(rate) = options.rate {
+    if let Some(rate) = &options.rate {
         let node = find(dataflow, &PLAYERS, "--rate", file)?;
-        set(node, "--rate", Some(&rate.to_string()));
+        set(node, "--rate", Some(rate));
     }
     if options.repeat {
         let node = find(dataflow, &PLAYERS, "--loop", file)?;
@@ -173,9 +173,8 @@ fn forward_heading(
 
 /// True if the graph is played at `--rate max`, so that no data may be lost.
 pub(crate) fn plays_at_max(dataflow: &Dataflow) -> bool {
-    let max = Rate::Max.to_string();
     let mut nodes = dataflow.nodes.iter();
-    nodes.any(|n| PLAYERS.contains(&n.executable()) && value(n, "--rate") == Some(&max))
+    nodes.any(|n| PLAYERS.contains(&n.executable()) && value(n, "--rate") == Some(MAX_RATE))
 }
 
 fn check_wired(node: &Node, source: HeadingFrom, file: &Path) -> anyhow::Result<()> {

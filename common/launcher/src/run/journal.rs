@@ -9,7 +9,7 @@ use serde::Serialize;
 
 use super::console::{LAUNCHER, say};
 use super::log_files::LogFiles;
-use super::output::{Output, Reader};
+use super::output::Output;
 use super::report::Report;
 use super::summary::Summary;
 use crate::control::LogLine;
@@ -24,7 +24,7 @@ pub(crate) struct Journal {
     pub report: Report,
     /// Rows that wait for the tracker's pose; `None` without a tracker.
     rows: Option<Rows>,
-    output: Output,
+    pub output: Output,
     json: bool,
     /// Frame of the poses in the table so far.
     frame: Option<Frame>,
@@ -58,45 +58,44 @@ impl Journal {
         }
     }
 
-    pub(crate) fn answer(&mut self, header: &HypothesesHeader, found: &[Hypothesis]) -> Reader {
+    pub(crate) fn answer(&mut self, header: &HypothesesHeader, found: &[Hypothesis]) {
         let answer = self.report.answer(header, found);
-        let Some(rows) = &mut self.rows else {
-            if answer.best.laser.is_some() || self.frame.is_none() {
-                self.show_header(answer.best.frame, ScanAnswer::header);
-            }
-            let text = answer.text();
-            let row = Row {
-                stamp_ns: answer.stamp_ns,
-                single: Some(answer),
-                pose: None,
-            };
-            return self.output.line(shown(self.json, &row, |_| text.clone()));
+        if let Some(rows) = &mut self.rows {
+            let due = rows.answer(header.stamp, answer);
+            return self.print(&due);
+        }
+        if answer.best.laser.is_some() || self.frame.is_none() {
+            self.show_header(answer.best.frame, ScanAnswer::header);
+        }
+        let text = answer.text();
+        let row = Row {
+            stamp_ns: answer.stamp_ns,
+            single: Some(answer),
+            pose: None,
         };
-        let due = rows.answer(header.stamp, answer);
-        self.print(&due)
+        let line = shown(self.json, &row, |_| text.clone());
+        self.output.line(line);
     }
 
     /// Records the tracker's pose of a scan and prints it. Poses between scans have no row.
-    pub(crate) fn pose(&mut self, header: &PoseHeader, words: &[u8]) -> Reader {
+    pub(crate) fn pose(&mut self, header: &PoseHeader, words: &[u8]) {
         let (Some(rows), 1) = (&mut self.rows, header.from_scan) else {
-            return Reader::Reads;
+            return;
         };
         let line = self.report.pose(header, words);
         let due = rows.pose(header.stamp, line);
-        self.print(&due)
+        self.print(&due);
     }
 
-    fn print(&mut self, rows: &[Row]) -> Reader {
-        let mut reader = Reader::Reads;
+    fn print(&mut self, rows: &[Row]) {
         for row in rows {
             let pose = row.pose.as_ref();
             let of = || pose.map_or(Frame::Laser, |pose| pose.place.frame);
             if let Some(frame) = row.frame().or_else(|| self.frame.is_none().then(of)) {
                 self.show_header(frame, Row::header);
             }
-            reader = self.output.line(shown(self.json, row, Row::text));
+            self.output.line(shown(self.json, row, Row::text));
         }
-        reader
     }
 
     fn show_header(&mut self, frame: Frame, header: fn(Frame) -> String) {

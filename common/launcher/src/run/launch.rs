@@ -26,7 +26,7 @@ use super::crew::Crew;
 use super::journal::Journal;
 use super::log_files::LogFiles;
 use super::options::Config;
-use super::output::{Output, Reader};
+use super::output::Output;
 use super::record::{self, RECORDER};
 use super::recording::Recorder;
 use super::watch::Watch;
@@ -192,7 +192,7 @@ fn stay(
         // Checked before receiving: messages of a source may arrive after its end was seen.
         let over = crew.is_over();
         let received = watch.take(journal, |health| crew.received(health, now))?;
-        if received.reader == Reader::Gone {
+        if !journal.output.is_read {
             return Ok(Flow::Stop);
         }
         if received.answers || !over {

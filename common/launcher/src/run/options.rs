@@ -2,13 +2,15 @@
 
 use std::hash::{BuildHasher, Hasher, RandomState};
 use std::path::PathBuf;
-use std::str::FromStr;
 
 use clap::Args;
 use engine::heading::HeadingConfig;
 use transport::{GRAPH_VARIABLE, GraphName, TransportError};
 
 use crate::descriptor::DEFAULT_FILE;
+
+/// Rate at which each answer is awaited and nothing may be lost.
+pub(crate) const MAX_RATE: &str = "max";
 
 #[derive(Debug, Args)]
 pub struct Config {
@@ -52,8 +54,8 @@ pub struct Options {
     pub cloud: ros::CloudOptions,
 
     /// Playback speed as a factor, or `max`: wait for each answer and lose nothing
-    #[arg(long, value_name = "FACTOR|max")]
-    pub rate: Option<Rate>,
+    #[arg(long, value_name = "FACTOR|max", value_parser = rate)]
+    pub rate: Option<String>,
 
     /// Repeat the recording, until Ctrl-C
     #[arg(long = "loop")]
@@ -167,33 +169,11 @@ fn random() -> u32 {
     (hasher.finish() >> 32) as u32
 }
 
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Rate {
-    Times(f64),
-    Max,
-}
-
-impl FromStr for Rate {
-    type Err = String;
-
-    fn from_str(text: &str) -> Result<Self, Self::Err> {
-        if text == "max" {
-            return Ok(Rate::Max);
-        }
-        text.parse()
-            .ok()
-            .filter(|factor: &f64| factor.is_finite() && *factor > 0.0)
-            .map(Rate::Times)
-            .ok_or_else(|| "allowed are a number above 0, as 0.5 or 10, and `max`".to_owned())
-    }
-}
-
-impl std::fmt::Display for Rate {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        match self {
-            Rate::Times(factor) => write!(f, "{factor}"),
-            Rate::Max => f.write_str("max"),
-        }
+fn rate(text: &str) -> Result<String, String> {
+    let is_factor = |factor: f64| factor.is_finite() && factor > 0.0;
+    match text == MAX_RATE || text.parse().is_ok_and(is_factor) {
+        true => Ok(text.to_owned()),
+        false => Err("allowed are a number above 0, as 0.5 or 10, and `max`".to_owned()),
     }
 }
 

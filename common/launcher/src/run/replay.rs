@@ -119,13 +119,4 @@ mod tests {
         let build = "cargo build -p emulator --package replayer";
         assert_eq!(dataflow.nodes[3].build[0].to_string(), build);
     }
-
-    #[test]
-    fn a_replayer_stays_where_it_is() {
-        let text =
-            "nodes: [{id: r, path: bin/replayer, args: --recording a --start 3, outputs: [scan]}]";
-        let mut dataflow = parsed(text);
-        let replayer = play(&mut dataflow, &["b".into()]);
-        assert_eq!(replayer.args, ["--start", "3", "--recording=b"]);
-    }
 }

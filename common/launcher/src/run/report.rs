@@ -259,12 +259,15 @@ mod tests {
         let header = pose(2, 1, TrackState::Unique);
         report.pose(&header, b"");
         assert!(report.all_answered());
+        report.pose(&pose(3, 2, TrackState::Unique), b"");
+        report.truth(&truth(3, 9.0));
         let summary = report.summary();
-        assert_eq!((summary.scans, summary.answered), (2, 2));
+        assert_eq!((summary.scans, summary.answered), (3, 3));
         assert_eq!(summary.searched, 1, "not every scan is");
         let tracking = summary.tracking.unwrap();
-        assert_eq!(tracking.states["Unique"], 0.5);
-        assert_eq!((tracking.accuracy.truths, tracking.accuracy.unique), (2, 1));
+        assert_eq!(tracking.states["Unique"], 2.0 / 3.0);
+        assert_eq!((tracking.accuracy.truths, tracking.accuracy.unique), (3, 2));
+        assert_eq!(tracking.accuracy.unique_wrong, 1);
         assert_eq!(summary.accuracy.truths, 1);
     }
 }

@@ -74,32 +74,3 @@ impl Tracking {
         })
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use answers::testing::pose;
-
-    #[test]
-    fn states_are_counted_and_poses_meet_their_truths() {
-        let mut tracking = Tracking::new(10);
-        assert_eq!(tracking.figures(), None);
-        let truth = Pose::new(1.0, -2.1, std::f64::consts::PI);
-        tracking.truth(1, truth);
-        tracking.pose(&pose(1, 1, TrackState::Searching), 30.0);
-        tracking.pose(&pose(2, 2, TrackState::Unique), 20.0);
-        tracking.truth(2, truth);
-        tracking.pose(&pose(3, 3, TrackState::Unique), 10.0);
-        tracking.truth(3, Pose::new(9.0, 0.0, 0.0));
-        tracking.pose(&pose(4, 4, TrackState::Doubtful), 10.0);
-        let figures = tracking.figures().unwrap();
-        assert_eq!(figures.scans, 4);
-        let shares = BTreeMap::from([("Doubtful", 0.25), ("Searching", 0.25), ("Unique", 0.5)]);
-        assert_eq!(figures.states, shares);
-        assert_eq!((figures.accuracy.truths, figures.accuracy.unique), (3, 2));
-        assert_eq!(figures.accuracy.unique_wrong, 1);
-        // The tolerance covers the difference of two coordinates.
-        assert!((figures.accuracy.error_m.median.unwrap() - 0.1).abs() < 1e-12);
-        assert_eq!(figures.latency_ms.median, Some(10.0));
-    }
-}

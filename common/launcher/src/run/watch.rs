@@ -3,7 +3,7 @@
 use messages::{HealthHeader, MapSet, topic};
 use transport::{Graph, Input, Subscriber, TransportError};
 
-use super::{journal::Journal, output::Reader};
+use super::journal::Journal;
 
 pub(crate) struct Watch {
     first_laser: Option<String>,
@@ -23,7 +23,6 @@ pub(crate) struct Received {
     pub answers: bool,
     /// Number of scans answered so far, by the counter of their player; 0 if no answer came now.
     pub taken: u64,
-    pub reader: Reader,
 }
 
 impl Watch {
@@ -79,20 +78,16 @@ impl Watch {
         let mut received = Received {
             answers: false,
             taken: 0,
-            reader: Reader::Reads,
         };
         while let Some(found) = self.hypotheses.receive()? {
             received.answers = true;
             received.taken = found.header().stamp.counter.saturating_add(1);
-            received.reader = journal.answer(found.header(), found.items());
+            journal.answer(found.header(), found.items());
         }
         // Poses come after the answers that they are based on.
         while let Some(pose) = self.poses.receive()? {
             received.answers = true;
-            let reader = journal.pose(pose.header(), pose.items());
-            if reader == Reader::Gone {
-                received.reader = reader;
-            }
+            journal.pose(pose.header(), pose.items());
         }
         while let Some(health) = self.health.receive()? {
             journal.report.health(health.header());
