@@ -20,8 +20,6 @@ use engine::search::{IndexKey, SECTIONS, SearchIndex};
 use engine::vote_search::Preparation;
 use twox_hash::XxHash3_64;
 
-use crate::error::FileError;
-
 const MAGIC: u64 = u64::from_be_bytes(*b"BCINDEX\n");
 
 /// Number of bytes read and hashed at a time, so that they stay in the CPU cache.
@@ -73,31 +71,23 @@ impl Header {
         XxHash3_64::oneshot(&bytes[..bytes.len() - size_of::<u64>()])
     }
 
-    fn check(&self, key: IndexKey, file_bytes: u64) -> Result<(), FileError> {
-        if self.magic != MAGIC {
-            return Err(FileError::Foreign);
-        }
-        if self.version != SearchIndex::VERSION {
-            return Err(FileError::Version {
-                found: self.version,
-                expected: SearchIndex::VERSION,
-            });
-        }
-        if self.checksum != self.sum() || self.count != SECTIONS as u32 {
-            return Err(FileError::Header);
-        }
-        if self.key != key.to_bytes() {
-            return Err(FileError::OtherKey);
-        }
+    fn check(&self, key: IndexKey, file_bytes: u64) -> io::Result<()> {
+        let (version, known) = (self.version, SearchIndex::VERSION);
         let lengths = self.sections.iter().map(|section| section.bytes);
         let expected = lengths.fold(size_of::<Header>() as u64, u64::saturating_add);
-        match file_bytes == expected {
-            true => Ok(()),
-            false => Err(FileError::Length {
-                found: file_bytes,
-                expected,
-            }),
-        }
+        Err(io::Error::other(if self.magic != MAGIC {
+            "not an index file".to_owned()
+        } else if version != known {
+            format!("it has version {version} and this is version {known}")
+        } else if self.checksum != self.sum() || self.count != SECTIONS as u32 {
+            "its header is damaged".to_owned()
+        } else if self.key != key.to_bytes() {
+            "the index is of another map or other settings".to_owned()
+        } else if file_bytes != expected {
+            format!("it has {file_bytes} bytes instead of {expected}")
+        } else {
+            return Ok(());
+        }))
     }
 }
 
@@ -119,20 +109,21 @@ pub(crate) fn read(
     file_bytes: u64,
     key: IndexKey,
     preparation: &Preparation,
-) -> Result<SearchIndex, FileError> {
+) -> io::Result<SearchIndex> {
     let mut header = Header::zeroed();
     from.read_exact(bytes_of_mut(&mut header))?;
     header.check(key, file_bytes)?;
-    let mut unchecked =
-        preparation.unchecked_index(header.sections.map(|section| section.bytes))?;
+    let lengths = header.sections.map(|section| section.bytes);
+    let unchecked = preparation.unchecked_index(lengths);
+    let mut unchecked = unchecked.map_err(io::Error::other)?;
     let sections = unchecked.sections_mut().into_iter().zip(header.sections);
     for (i, (section, Section { checksum, .. })) in sections.enumerate() {
         ask_for_large_pages(section);
         if read_hashing(from, section)? != checksum {
-            return Err(FileError::Section(i));
+            return Err(io::Error::other(format!("section {i} is damaged")));
         }
     }
-    Ok(unchecked.check()?)
+    unchecked.check().map_err(io::Error::other)
 }
 
 /// Requests huge pages for a section to be filled, as allocating small pages takes as long as
@@ -179,30 +170,12 @@ mod tests {
         preparation(1).key().unwrap()
     }
 
-    fn read_back(bytes: &[u8]) -> Result<SearchIndex, FileError> {
-        read(&mut &*bytes, bytes.len() as u64, key(), &preparation(1))
+    fn read_back(bytes: &[u8]) -> Result<SearchIndex, String> {
+        let read = read(&mut &*bytes, bytes.len() as u64, key(), &preparation(1));
+        read.map_err(|error| error.to_string())
     }
 
-    #[test]
-    fn each_byte_of_the_header_counts() {
-        let mut bytes = file();
-        for place in 0..size_of::<Header>() {
-            for flip in [1, 128, 255] {
-                bytes[place] ^= flip;
-                let refused = read_back(&bytes).unwrap_err();
-                let expected = match place {
-                    0..8 => matches!(refused, FileError::Foreign),
-                    8..12 => matches!(refused, FileError::Version { .. }),
-                    _ => matches!(refused, FileError::Header),
-                };
-                assert!(expected, "byte {place}: {refused}");
-                bytes[place] ^= flip;
-            }
-        }
-        assert!(read_back(&bytes).is_ok(), "all is as it was");
-    }
-
-    fn claiming(change: impl FnOnce(&mut Header)) -> Result<SearchIndex, FileError> {
+    fn claiming(change: impl FnOnce(&mut Header)) -> Result<SearchIndex, String> {
         let mut bytes = file();
         let (header, _) = bytes.split_at_mut(size_of::<Header>());
         let mut claimed: Header = bytemuck::pod_read_unaligned(header);
@@ -213,22 +186,27 @@ mod tests {
     }
 
     #[test]
-    fn a_sound_header_that_claims_too_much_is_refused_before_room_is_made() {
+    fn a_header_that_claims_something_else_is_refused_before_room_is_made() {
         assert!(claiming(|_| ()).is_ok());
-        let moved = claiming(|header| {
-            // From the intervals to the searched cells, with the same total size.
+        let said = |change: fn(&mut Header), expected: &str| {
+            let said = claiming(change).unwrap_err();
+            assert!(said.contains(expected), "{said}");
+        };
+        // From the intervals to the searched cells, with the same total size.
+        let moved = |header: &mut Header| {
             header.sections[5].bytes -= 48 * 3;
             header.sections[0].bytes += 48 * 3;
-        });
-        assert!(matches!(moved.unwrap_err(), FileError::Sections(_)));
+        };
+        let moved = claiming(moved).unwrap_err();
+        assert!(moved.contains("which no index of the map has"), "{moved}");
         for section in 0..SECTIONS {
             let huge = claiming(|header| header.sections[section].bytes = u64::MAX);
-            assert!(matches!(huge.unwrap_err(), FileError::Length { .. }));
+            assert!(huge.unwrap_err().contains("bytes instead of"));
         }
-        let other = claiming(|header| header.key[3] ^= 1);
-        assert!(matches!(other.unwrap_err(), FileError::OtherKey));
-        let sections = claiming(|header| header.count += 1);
-        assert!(matches!(sections.unwrap_err(), FileError::Header));
+        said(|header| header.key[3] ^= 1, "another map");
+        said(|header| header.count += 1, "header is damaged");
+        said(|header| header.magic ^= 1, "not an index file");
+        said(|header| header.version ^= 1, "this is version");
     }
 
     #[test]
@@ -247,13 +225,11 @@ mod tests {
             // The file is cut while it is read: fewer bytes than its size at first.
             let mut cut = &bytes[..end];
             let cut = read(&mut cut, bytes.len() as u64, key(), &preparation(1));
-            assert!(matches!(cut.unwrap_err(), FileError::Read(_)), "{end}");
+            let kind = cut.unwrap_err().kind();
+            assert_eq!(kind, io::ErrorKind::UnexpectedEof, "{end}");
         }
         bytes.push(0);
-        assert!(matches!(
-            read_back(&bytes).unwrap_err(),
-            FileError::Length { .. }
-        ));
+        assert!(read_back(&bytes).unwrap_err().contains("bytes instead of"));
     }
 
     proptest! {

@@ -44,17 +44,18 @@ fn is_there_for(user: u32, path: &Path) -> Result<bool, CacheError> {
         Err(error) if error.kind() == ErrorKind::NotFound => return Ok(false),
         Err(error) => return Err(failed("look at", path)(error)),
     };
-    let (path, owner, mode) = (path.to_owned(), found.uid(), found.mode() & 0o777);
-    if !found.is_dir() {
-        return Err(CacheError::NotAFolder(path));
-    }
-    if owner != user {
-        return Err(CacheError::ForeignFolder { path, owner, user });
-    }
-    match mode & 0o077 {
-        0 => Ok(true),
-        _ => Err(CacheError::SharedFolder { path, mode }),
-    }
+    let (owner, mode) = (found.uid(), found.mode() & 0o777);
+    let why = if !found.is_dir() {
+        "it is no folder; remove it, or set --index-cache".to_owned()
+    } else if owner != user {
+        format!("it belongs to user {owner}, and this is user {user}; set --index-cache")
+    } else if mode & 0o077 != 0 {
+        format!("its mode is {mode:03o}, so others can use it; chmod 700 makes it private")
+    } else {
+        return Ok(true);
+    };
+    let path = path.to_owned();
+    Err(CacheError::Folder { path, why })
 }
 
 /// Creates a temporary file, which is removed unless it is renamed.
@@ -119,13 +120,11 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let user = nix::unistd::geteuid().as_raw();
         let foreign = is_there_for(user + 1, folder.path()).unwrap_err();
-        assert!(matches!(foreign, CacheError::ForeignFolder { owner, .. } if owner == user));
+        assert!(foreign.to_string().contains(&format!("user {user}, and")));
         for mode in [0o701, 0o720, 0o777] {
             set_permissions(folder.path(), Permissions::from_mode(mode)).unwrap();
-            let shared = make(folder.path()).unwrap_err();
-            assert!(
-                matches!(shared, CacheError::SharedFolder { mode: found, .. } if found == mode)
-            );
+            let shared = make(folder.path()).unwrap_err().to_string();
+            assert!(shared.contains(&format!("mode is {mode:o}")), "{shared}");
         }
     }
 
@@ -139,8 +138,8 @@ mod tests {
         symlink(&folder, &link).unwrap();
         write(&file, "").unwrap();
         for path in [link, file] {
-            let refused = make(&path).unwrap_err();
-            assert!(matches!(refused, CacheError::NotAFolder(found) if found == path));
+            let refused = make(&path).unwrap_err().to_string();
+            assert!(refused.contains("it is no folder"), "{refused}");
         }
     }
 

@@ -19,4 +19,4 @@ mod testing;
 
 pub use cache::{IndexCache, Kept, Prepared, Unsaved, prepared_map};
 pub use config::{CachePlace, IndexCacheConfig};
-pub use error::{CacheError, FileError};
+pub use error::CacheError;
