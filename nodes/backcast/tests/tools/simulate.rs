@@ -67,23 +67,6 @@ fn two_lasers_back_to_back_show_what_one_may_not() {
 }
 
 #[test]
-fn the_motion_within_scans_is_taken_out() {
-    // Turns on the spot at 60 degrees per second: 6 degrees in 0.1 s.
-    let folder = simulated(
-        "--path '9,-10.9 9.2,-10.9 9,-10.9 9.2,-10.9 9,-10.9' --turn-rate 60 --rate 3 --scan-duration 0.1",
-    );
-    let error = |deskew: bool| {
-        let judged = evaluate(&folder, &format!("--deskew {deskew}"));
-        assert_eq!(judged["success_50cm_10deg"], 1.0, "{judged}");
-        judged["error_deg"]["median"].as_f64().unwrap()
-    };
-    let (taken_out, left_in) = (error(true), error(false));
-    // Without deskewing, both ends of a scan are off by 3 degrees, with the heading in between;
-    // with it, the error is that of a standing robot, a few tenths of a degree.
-    assert!(taken_out < 0.25 * left_in, "{taken_out} and {left_in}");
-}
-
-#[test]
 fn a_lidar_tracks_as_well_as_its_middle_ring() {
     let folder = simulated(&format!(
         "--path '{CORRIDOR}' --rings 16 --field-of-view 360 --beams 720 --scan-duration 0.1"
