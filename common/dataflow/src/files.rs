@@ -44,7 +44,7 @@ fn missing(node: &Node, folder: &Path) -> Option<Problem> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{Topics, load};
+    use crate::load;
 
     fn file(text: &str) -> tempfile::NamedTempFile {
         let file = tempfile::NamedTempFile::new().unwrap();
@@ -56,14 +56,14 @@ mod tests {
     fn errors_name_the_file_and_every_place() {
         let file = file("nodes:\n  - id: a\n  - path: x\n");
         let name = file.path().display();
-        let error = load(file.path(), &Topics::default()).unwrap_err();
+        let error = load(file.path()).unwrap_err();
         let expected = format!("{name}:2:5: `path` is missing\n{name}:3:5: `id` is missing");
         assert_eq!(error.to_string(), expected);
     }
 
     #[test]
     fn a_file_that_cannot_be_a_descriptor_is_refused() {
-        let at = |path: &Path| load(path, &Topics::default()).unwrap_err();
+        let at = |path: &Path| load(path).unwrap_err();
         let missing = at(Path::new("/nowhere/dataflow.yaml"));
         assert!(matches!(missing, DataflowError::Unreadable { .. }));
         let size = usize::try_from(MAX_FILE_BYTES).unwrap();
@@ -82,7 +82,7 @@ mod tests {
   - {id: d, path: plain}
   - {id: e, path: ./.}
 ";
-        let dataflow = crate::parse(text, &Topics::default()).unwrap();
+        let dataflow = crate::parse(text).unwrap();
         let problems = check_executables(&dataflow, folder.path());
         let said: Vec<_> = problems.iter().map(ToString::to_string).collect();
         let expected = [

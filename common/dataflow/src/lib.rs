@@ -4,7 +4,7 @@
 //! It is a strict subset of dora's descriptor: everything accepted here, `dora validate` and `dora
 //! run` accept with the same meaning. Where dora guesses, replaces or ignores, this crate reports
 //! an error. Every problem names its line and column, and all problems that can be found at once
-//! are reported at once. The crate starts no process and knows no topics: the caller provides them.
+//! are reported at once. The crate starts no process.
 //!
 //! | key | value | default |
 //! |---|---|---|
@@ -39,7 +39,6 @@ pub use descriptor::{Command, Dataflow, Input, Node, Restart, RestartPolicy};
 pub use error::DataflowError;
 pub use files::check_executables;
 pub use place::{Place, Problem};
-pub use wiring::Topics;
 
 use std::path::Path;
 
@@ -48,20 +47,20 @@ pub const MAX_NODES: usize = 64;
 pub const MAX_ID_BYTES: usize = 32;
 
 /// Reads and checks the descriptor at `path`, of at most [`MAX_FILE_BYTES`].
-pub fn load(path: &Path, topics: &Topics) -> Result<Dataflow, DataflowError> {
+pub fn load(path: &Path) -> Result<Dataflow, DataflowError> {
     let text = files::read(path)?;
-    parse(&text, topics).map_err(|problems| DataflowError::Wrong {
+    parse(&text).map_err(|problems| DataflowError::Wrong {
         file: path.to_owned(),
         problems,
     })
 }
 
 /// Checks a descriptor; returns its problems in the order of the text, or why it is none.
-pub fn parse(text: &str, topics: &Topics) -> Result<Dataflow, Vec<Problem>> {
+pub fn parse(text: &str) -> Result<Dataflow, Vec<Problem>> {
     let raw = raw::parse(text).map_err(|problem| vec![problem])?;
     let mut problems = Vec::new();
-    let dataflow = node::read_all(&raw, text, topics, &mut problems);
-    wiring::check(&raw, topics, &mut problems);
+    let dataflow = node::read_all(&raw, text, &mut problems);
+    wiring::check(&raw, &mut problems);
     if problems.is_empty() {
         return Ok(dataflow);
     }
@@ -89,21 +88,16 @@ mod tests {
     path: y
     inputs: { scan: a/scan }
 ";
-    const TOPICS: Topics = Topics {
-        names: &["scan"],
-        shared: &[],
-        several: &[],
-    };
 
     #[test]
     fn the_descriptor_that_the_properties_damage_is_sound() {
-        assert_eq!(parse(SOUND, &TOPICS).map(|d| d.nodes.len()), Ok(2));
+        assert_eq!(parse(SOUND).map(|d| d.nodes.len()), Ok(2));
     }
 
     proptest! {
         #[test]
         fn any_text_is_read_or_refused(text in any::<String>()) {
-            let _ = parse(&text, &TOPICS);
+            let _ = parse(&text);
         }
 
         /// Every problem refers to a line of the text.
@@ -115,7 +109,7 @@ mod tests {
         ) {
             let end = (at + length).min(SOUND.len());
             let text = format!("{}{patch}{}", &SOUND[..at], &SOUND[end..]);
-            for problem in parse(&text, &TOPICS).err().unwrap_or_default() {
+            for problem in parse(&text).err().unwrap_or_default() {
                 let lines = text.lines().count() as u64;
                 prop_assert!((1..=lines + 1).contains(&problem.place.line), "{problem}");
             }

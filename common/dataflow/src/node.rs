@@ -3,18 +3,14 @@
 use serde_saphyr::Spanned;
 
 use crate::raw::{RawDataflow, RawNode, Text};
+use crate::wiring::{SEVERAL, split};
 use crate::{
-    Dataflow, Input, MAX_ID_BYTES, MAX_NODES, Node, Place, Problem, Restart, RestartPolicy, Topics,
-    scalar, words,
+    Dataflow, Input, MAX_ID_BYTES, MAX_NODES, Node, Place, Problem, Restart, RestartPolicy, scalar,
+    words,
 };
 
 /// Reads all nodes and adds their errors to `problems`.
-pub(crate) fn read_all(
-    raw: &RawDataflow,
-    source: &str,
-    topics: &Topics,
-    problems: &mut Vec<Problem>,
-) -> Dataflow {
+pub(crate) fn read_all(raw: &RawDataflow, source: &str, problems: &mut Vec<Problem>) -> Dataflow {
     let found = raw.nodes.value.len();
     let mut list_fault = |fault| {
         let place = raw.nodes.referenced.into();
@@ -26,11 +22,7 @@ pub(crate) fn read_all(
     if found > MAX_NODES {
         list_fault(format!("{found} nodes; at most {MAX_NODES} are allowed"));
     }
-    let mut reader = Reader {
-        source,
-        topics,
-        problems,
-    };
+    let mut reader = Reader { source, problems };
     let nodes = raw.nodes.value.iter().map(|n| reader.node(n)).collect();
     Dataflow { nodes }
 }
@@ -38,7 +30,6 @@ pub(crate) fn read_all(
 /// Reads the keys one by one and notes errors; after one it continues with the default.
 struct Reader<'a> {
     source: &'a str,
-    topics: &'a Topics<'a>,
     problems: &'a mut Vec<Problem>,
 }
 
@@ -55,13 +46,9 @@ impl Reader<'_> {
             args: self.optional(node.args.as_ref(), |t| words::split_args(&t.value)),
             env: self.env(node),
             build: self.optional(node.build.as_ref(), |t| words::split_build(&t.value)),
-            inputs: node
-                .inputs()
-                .iter()
-                .filter_map(|input| read_input(input, self.topics))
-                .collect(),
-            outputs: outputs(node, self.topics),
-            streams: streams(node, self.topics),
+            inputs: node.inputs().iter().filter_map(read_input).collect(),
+            outputs: outputs(node),
+            streams: streams(node),
             restart: self.restart(node),
         }
     }
@@ -207,10 +194,10 @@ fn read_policy(text: &Text) -> Result<RestartPolicy, String> {
 }
 
 /// Reads `topic: node/topic`; errors are reported by the wiring check.
-fn read_input((name, source): &(Text, Text), topics: &Topics) -> Option<Input> {
+fn read_input((name, source): &(Text, Text)) -> Option<Input> {
     let (from, output) = source.value.split_once('/')?;
-    let (topic, stream) = match topics.split(output) {
-        (topic, stream) if topics.several.contains(&topic) => (topic, stream),
+    let (topic, stream) = match split(output) {
+        (topic, stream) if SEVERAL.contains(&topic) => (topic, stream),
         _ => (&*name.value, ""),
     };
     Some(Input {
@@ -220,10 +207,10 @@ fn read_input((name, source): &(Text, Text), topics: &Topics) -> Option<Input> {
     })
 }
 
-fn outputs(node: &RawNode, topics: &Topics) -> Vec<String> {
+fn outputs(node: &RawNode) -> Vec<String> {
     let mut outputs: Vec<String> = Vec::new();
     for output in node.outputs() {
-        let (topic, _) = topics.split(&output.value);
+        let (topic, _) = split(&output.value);
         if !outputs.iter().any(|known| known == topic) {
             outputs.push(topic.to_owned());
         }
@@ -231,8 +218,8 @@ fn outputs(node: &RawNode, topics: &Topics) -> Vec<String> {
     outputs
 }
 
-fn streams(node: &RawNode, topics: &Topics) -> Vec<String> {
-    let streams = node.outputs().iter().map(|o| topics.split(&o.value).1);
+fn streams(node: &RawNode) -> Vec<String> {
+    let streams = node.outputs().iter().map(|o| split(&o.value).1);
     let streams = streams.filter(|stream| !stream.is_empty());
     streams.map(str::to_owned).collect()
 }
@@ -245,7 +232,7 @@ mod tests {
     use crate::parse;
 
     fn faults(text: &str) -> Vec<String> {
-        let problems = parse(text, &Topics::default()).err().unwrap_or_default();
+        let problems = parse(text).err().unwrap_or_default();
         problems.iter().map(ToString::to_string).collect()
     }
 
@@ -274,7 +261,7 @@ nodes:
     restart_window: 90
     health_check_timeout: 2.5
 ";
-        let node = parse(text, &Topics::default()).unwrap().nodes.remove(0);
+        let node = parse(text).unwrap().nodes.remove(0);
         assert_eq!(node.id, "replayer");
         assert_eq!(node.path, "target/release/replayer");
         assert_eq!(node.path_place.to_string(), "4:11");
@@ -294,7 +281,7 @@ nodes:
     #[test]
     fn a_long_delay_is_not_cut_short_by_the_default() {
         let text = "nodes: [{id: a, path: x, restart_policy: always, restart_delay: 3600}]";
-        let node = parse(text, &Topics::default()).unwrap().nodes.remove(0);
+        let node = parse(text).unwrap().nodes.remove(0);
         assert_eq!(node.restart.max_delay, node.restart.delay);
     }
 

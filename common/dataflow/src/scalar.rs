@@ -97,12 +97,12 @@ fn yaml_reads_otherwise(value: &str) -> bool {
 
 #[cfg(test)]
 mod tests {
-    use crate::{Topics, parse};
+    use crate::parse;
 
     /// Returns the errors for `key: value`.
     fn fault(key: &str, value: &str) -> Option<String> {
         let text = format!("nodes:\n  - id: a\n    path: x\n    {key}: {value}\n");
-        let problems = parse(&text, &Topics::default()).err()?;
+        let problems = parse(&text).err()?;
         Some(problems.iter().map(ToString::to_string).collect())
     }
 

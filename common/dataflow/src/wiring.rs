@@ -2,52 +2,45 @@
 
 use std::collections::HashMap;
 
+use messages::{Topic, topic};
+
 use crate::Problem;
 use crate::raw::{RawDataflow, RawNode, Text};
 
-#[derive(Debug, Clone, Copy, Default)]
-pub struct Topics<'a> {
-    pub names: &'a [&'a str],
-    /// Topics that several nodes may publish.
-    pub shared: &'a [&'a str],
-    /// Topics that a graph may have several of: `scan`, `scan_front`, `scan_rear`. Several nodes
-    /// may publish one, and an input that is wired to one may have any name.
-    pub several: &'a [&'a str],
-}
+/// Topics that several nodes may publish: every node does.
+const SHARED: [&str; 2] = [topic::Health::NAME, topic::Log::NAME];
 
-impl Topics<'_> {
-    /// Splits an output into its topic and its suffix: `scan` and `front` for `scan_front`.
-    pub(crate) fn split<'n>(&self, output: &'n str) -> (&'n str, &'n str) {
-        let split = self.several.iter().find_map(|topic| {
-            let suffix = output.strip_prefix(topic)?.strip_prefix('_')?;
-            (!suffix.is_empty()).then(|| (&output[..topic.len()], suffix))
-        });
-        split
-            .filter(|_| !self.names.contains(&output))
-            .unwrap_or((output, ""))
-    }
+/// Topics that a graph may have several of: `scan`, `scan_front`, `scan_rear`. Several nodes may
+/// publish one, and an input that is wired to one may have any name.
+pub(crate) const SEVERAL: [&str; 1] = [topic::Scan::NAME];
 
-    fn is_several(&self, output: &str) -> bool {
-        self.several.contains(&self.split(output).0)
-    }
+/// Splits an output into its topic and its suffix: `scan` and `front` for `scan_front`.
+pub(crate) fn split(output: &str) -> (&str, &str) {
+    let split = SEVERAL.iter().find_map(|topic| {
+        let suffix = output.strip_prefix(topic)?.strip_prefix('_')?;
+        (!suffix.is_empty()).then(|| (&output[..topic.len()], suffix))
+    });
+    split
+        .filter(|_| !topic::NAMES.contains(&output))
+        .unwrap_or((output, ""))
 }
 
 /// Adds the errors in ids, ports and wires of the graph to `problems`.
-pub(crate) fn check(raw: &RawDataflow, topics: &Topics, problems: &mut Vec<Problem>) {
+pub(crate) fn check(raw: &RawDataflow, problems: &mut Vec<Problem>) {
     let nodes: Vec<&RawNode> = raw.nodes.value.iter().map(|n| &n.value).collect();
     let mut note = |text: &Text, fault| {
         let place = text.referenced.into();
         problems.push(Problem { place, fault });
     };
     check_ids(&nodes, &mut note);
-    check_outputs(&nodes, topics, &mut note);
+    check_outputs(&nodes, &mut note);
     for &node in &nodes {
         for (name, source) in node.inputs() {
             let is_free = source.value.split_once('/');
-            let is_free = is_free.is_some_and(|(_, output)| topics.is_several(output));
+            let is_free = is_free.is_some_and(|(_, output)| SEVERAL.contains(&split(output).0));
             let named = match is_free {
                 true => Ok(()),
-                false => check_name(&name.value, topics),
+                false => check_name(&name.value),
             };
             if let Err(fault) = named {
                 note(name, fault);
@@ -75,11 +68,11 @@ fn check_ids(nodes: &[&RawNode], note: &mut impl FnMut(&Text, String)) {
     }
 }
 
-fn check_outputs(nodes: &[&RawNode], topics: &Topics, note: &mut impl FnMut(&Text, String)) {
+fn check_outputs(nodes: &[&RawNode], note: &mut impl FnMut(&Text, String)) {
     let mut senders = HashMap::new();
     for &node in nodes {
         for output in node.outputs() {
-            if let Err(fault) = check_output(node, &output.value, topics, &mut senders) {
+            if let Err(fault) = check_output(node, &output.value, &mut senders) {
                 note(output, fault);
             }
         }
@@ -90,15 +83,14 @@ fn check_outputs(nodes: &[&RawNode], topics: &Topics, note: &mut impl FnMut(&Tex
 fn check_output<'a>(
     node: &'a RawNode,
     topic: &'a str,
-    topics: &Topics,
     senders: &mut HashMap<&'a str, &'a RawNode>,
 ) -> Result<(), String> {
-    check_name(topic, topics)?;
+    check_name(topic)?;
     match senders.insert(topic, node) {
         Some(first) if std::ptr::eq(first, node) => Err(format!(
             "the output `{topic}` is listed a second time; each may be listed once"
         )),
-        Some(first) if !topics.shared.contains(&topic) && !topics.several.contains(&topic) => {
+        Some(first) if !SHARED.contains(&topic) && !SEVERAL.contains(&topic) => {
             let first = first.id();
             Err(format!(
                 "`{topic}` is already sent by `{first}`, and a topic has one sender in a graph; \
@@ -109,11 +101,11 @@ fn check_output<'a>(
     }
 }
 
-fn check_name(found: &str, topics: &Topics) -> Result<(), String> {
-    if topics.names.contains(&topics.split(found).0) {
+fn check_name(found: &str) -> Result<(), String> {
+    if topic::NAMES.contains(&split(found).0) {
         return Ok(());
     }
-    let allowed = topics.names.join(", ");
+    let allowed = topic::NAMES.join(", ");
     Err(format!(
         "there is no topic `{found}`; allowed are {allowed}"
     ))
@@ -172,16 +164,10 @@ mod tests {
     use super::*;
     use crate::{Dataflow, parse};
 
-    const TOPICS: Topics = Topics {
-        names: &["scan", "votes", "health"],
-        shared: &["health"],
-        several: &[],
-    };
-
     fn read(nodes: &[&str]) -> Result<Dataflow, Vec<Problem>> {
         let node = |n: &&str| format!("  - {{path: x, {n}}}\n");
         let nodes: String = nodes.iter().map(node).collect();
-        parse(&format!("nodes:\n{nodes}"), &TOPICS)
+        parse(&format!("nodes:\n{nodes}"))
     }
 
     fn check(nodes: &[&str], expected: &[&str]) {
@@ -203,24 +189,20 @@ mod tests {
     fn ports_name_topics_once() {
         let (scam, twice) = ("2:32: there is no topic `scam`", "2:44: the output `scan`");
         check(&["id: a, outputs: [scam, scan, scan]"], &[scam, twice]);
-        let sender = "id: a, outputs: [scan]";
-        let image = "3:31: there is no topic `image`; allowed are scan, votes, health";
-        check(&[sender, "id: b, inputs: {image: a/scan}"], &[image]);
+        let sender = "id: a, outputs: [votes]";
+        let image = "3:31: there is no topic `image`; allowed are scan, odometry";
+        check(&[sender, "id: b, inputs: {image: a/votes}"], &[image]);
     }
 
     #[test]
     fn a_graph_may_have_several_of_some_topics() {
-        let topics = Topics {
-            several: &["scan"],
-            ..TOPICS
-        };
         let text = "nodes:
   - {id: front, path: x, outputs: [scan]}
   - {id: rear, path: x, outputs: [scan]}
   - {id: both, path: x, outputs: [scan_left, scan_right]}
   - {id: a, path: x, inputs: {scan_front: front/scan, any: rear/scan, scan: both/scan_left, x: both/scan_right}}
 ";
-        let graph = parse(text, &topics).unwrap();
+        let graph = parse(text).unwrap();
         let wires = graph.nodes[3].inputs.iter();
         let wires: Vec<_> = wires.map(|i| (&*i.topic, &*i.from, &*i.stream)).collect();
         let expected = [
@@ -233,16 +215,16 @@ mod tests {
         assert_eq!(graph.nodes[2].outputs, ["scan"]);
         assert_eq!(graph.nodes[2].streams, ["left", "right"]);
         let wrong = text.replace("x: both/scan_right", "votes: front/health");
-        let said = parse(&wrong, &topics).unwrap_err()[0].to_string();
+        let said = parse(&wrong).unwrap_err()[0].to_string();
         assert!(said.contains("does not list it"), "{said}");
         let wrong = text.replace("[scan_left, scan_right]", "[scan_left, scan_left]");
-        assert!(parse(&wrong, &topics).is_err());
+        assert!(parse(&wrong).is_err());
     }
 
     #[test]
     fn a_topic_has_one_sender() {
-        let nodes = ["a", "b"].map(|id| format!("id: {id}, outputs: [scan, health]"));
-        let sent = "3:32: `scan` is already sent by `a`";
+        let nodes = ["a", "b"].map(|id| format!("id: {id}, outputs: [votes, health]"));
+        let sent = "3:32: `votes` is already sent by `a`";
         check(&[&nodes[0], &nodes[1]], &[sent]);
     }
 

@@ -4,8 +4,7 @@ use std::path::{Path, PathBuf};
 
 use anyhow::Context;
 use command_line::wrong_use;
-use dataflow::{Dataflow, DataflowError, Topics};
-use messages::{Topic, topic};
+use dataflow::{Dataflow, DataflowError};
 
 use crate::{installed, run::supervision::is_essential};
 
@@ -13,13 +12,6 @@ pub const DEFAULT_FILE: &str = "dataflow.yaml";
 
 /// Message of a process without a current directory.
 pub const NO_FOLDER: &str = "cannot find the current directory";
-
-/// Topics that a descriptor may name. Every node publishes health and log.
-const TOPICS: Topics = Topics {
-    names: topic::NAMES,
-    shared: &[topic::Health::NAME, topic::Log::NAME],
-    several: &[topic::Scan::NAME],
-};
 
 #[derive(Debug)]
 pub struct Descriptor {
@@ -50,7 +42,7 @@ pub fn load(file: &Path, builds: Builds) -> anyhow::Result<Descriptor> {
             folder.display()
         )));
     }
-    let mut dataflow = dataflow::load(file, &TOPICS)?;
+    let mut dataflow = dataflow::load(file)?;
     // A file always has a parent; the fallback is never used.
     let folder = absolute.parent().unwrap_or(Path::new("/")).to_owned();
     for node in &mut dataflow.nodes {

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use dataflow::{Dataflow, Topics};
+use dataflow::Dataflow;
 use messages::{Topic, topic};
 
 use crate::BridgeError;
@@ -19,12 +19,7 @@ pub struct Ports {
 impl Ports {
     /// Reads the ports of node `id` from the descriptor `file`.
     pub fn read(file: &Path, id: &str) -> Result<Self, BridgeError> {
-        let topics = Topics {
-            names: topic::NAMES,
-            shared: &[topic::Health::NAME, topic::Log::NAME],
-            several: &[topic::Scan::NAME],
-        };
-        Self::of(&dataflow::load(file, &topics)?, file, id)
+        Self::of(&dataflow::load(file)?, file, id)
     }
 
     fn of(graph: &Dataflow, file: &Path, id: &str) -> Result<Self, BridgeError> {

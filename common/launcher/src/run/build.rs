@@ -83,7 +83,7 @@ mod tests {
 
     fn build_nodes(nodes: &str, folder: &Path) -> anyhow::Result<()> {
         let text = format!("nodes:\n{nodes}");
-        let dataflow = dataflow::parse(&text, &dataflow::Topics::default()).unwrap();
+        let dataflow = dataflow::parse(&text).unwrap();
         build_all(&dataflow, folder)
     }
 

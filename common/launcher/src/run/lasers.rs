@@ -82,12 +82,7 @@ mod tests {
     use super::*;
 
     fn named(text: &str) -> Vec<Vec<String>> {
-        let topics = dataflow::Topics {
-            names: topic::NAMES,
-            several: &[topic::Scan::NAME],
-            ..dataflow::Topics::default()
-        };
-        let mut dataflow = dataflow::parse(text, &topics).unwrap();
+        let mut dataflow = dataflow::parse(text).unwrap();
         name(&mut dataflow, Path::new("/")).unwrap();
         dataflow.nodes.into_iter().map(|node| node.args).collect()
     }

@@ -6,11 +6,7 @@ use dataflow::Dataflow;
 use super::options::Options;
 
 pub(crate) fn parsed(text: &str) -> Dataflow {
-    let topics = dataflow::Topics {
-        names: messages::topic::NAMES,
-        ..dataflow::Topics::default()
-    };
-    dataflow::parse(text, &topics).unwrap()
+    dataflow::parse(text).unwrap()
 }
 
 #[derive(Parser)]
