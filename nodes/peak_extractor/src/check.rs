@@ -1,6 +1,7 @@
 //! Validation of votes: with a wrong heading, cell or order, the engine would compute nonsense.
 
 use std::cmp::Reverse;
+use std::fmt::Display;
 
 use engine::beams::BeamConfig;
 use engine::peaks::PeakInput;
@@ -72,7 +73,10 @@ pub fn check_on_map<'a>(
 
 fn outcome(header: &VotesHeader) -> Result<SearchOutcome, PeakError> {
     let found = header.outcome;
-    SearchOutcome::from_code(found).ok_or(PeakError::Outcome { found })
+    SearchOutcome::from_code(found).ok_or_else(|| {
+        let allowed = "0 (found), 1 (no votes), 2 (refused) and 3 (not asked)";
+        setting("outcome", &found, allowed)
+    })
 }
 
 /// Returns the pose of the laser on the robot, if the header has it.
@@ -83,7 +87,10 @@ pub fn mount(header: &VotesHeader) -> Result<Option<Pose>, PeakError> {
     let found = header.base_from_laser;
     let mount = Pose::from(found);
     if !mount.is_finite() {
-        return Err(PeakError::Mount { found });
+        let (x, y, yaw) = (found.x, found.y, found.yaw);
+        return Err(PeakError::Votes(format!(
+            "base_from_laser is x {x} m, y {y} m, yaw {yaw} rad: each must be finite"
+        )));
     }
     Ok(Some(mount))
 }
@@ -91,19 +98,14 @@ pub fn mount(header: &VotesHeader) -> Result<Option<Pose>, PeakError> {
 fn beams(header: &VotesHeader) -> Result<BeamConfig, PeakError> {
     let found = header.beam_arc_m;
     if !(0.0..=2.0).contains(&found) {
-        return Err(PeakError::Setting {
-            field: "beam_arc_m",
-            found,
-            allowed: "0 to 2 metres",
-        });
+        return Err(setting("beam_arc_m", &found, "0 to 2 metres"));
     }
-    let max_beams = Some(header.max_beams).filter(|beams| (1..=1 << 16).contains(beams));
+    let max_beams = header.max_beams;
+    if !(1..=1 << 16).contains(&max_beams) {
+        return Err(setting("max_beams", &max_beams, "1 to 65536"));
+    }
     Ok(BeamConfig {
-        max_beams: max_beams.ok_or(PeakError::Setting {
-            field: "max_beams",
-            found: header.max_beams.into(),
-            allowed: "1 to 65536",
-        })?,
+        max_beams,
         beam_arc_m: found,
     })
 }
@@ -111,22 +113,28 @@ fn beams(header: &VotesHeader) -> Result<BeamConfig, PeakError> {
 /// Returns the pooling factor: map cells per searched cell and axis.
 fn pooling(header: &VotesHeader) -> Result<u32, PeakError> {
     let found = header.pooling;
-    let pooling = Some(found).filter(|pooling| (1..=MAX_POOLED).contains(pooling));
-    pooling.ok_or(PeakError::Setting {
-        field: "pooling",
-        found: found.into(),
-        allowed: "1 to 1000",
-    })
+    match (1..=MAX_POOLED).contains(&found) {
+        true => Ok(found),
+        false => Err(setting("pooling", &found, "1 to 1000")),
+    }
+}
+
+fn setting(field: &str, found: &dyn Display, allowed: &str) -> PeakError {
+    PeakError::Votes(format!("{field} is {found}: allowed are {allowed}"))
 }
 
 fn check_header(header: &VotesHeader, votes: &[Vote]) -> Result<(), PeakError> {
     let headings = header.headings;
     if !(1..=1 << 16).contains(&headings) {
-        return Err(PeakError::Headings { found: headings });
+        return Err(setting("headings", &headings, "1 to 65536"));
     }
     let heading = header.known_heading;
     if header.heading_known == 1 && !heading.is_finite() {
-        return Err(PeakError::KnownHeading { found: heading });
+        return Err(setting(
+            "known_heading",
+            &heading,
+            "finite numbers, radians",
+        ));
     }
     let (best, highest_possible) = (header.best, header.highest_possible);
     let is_first = votes.first().map(|vote| vote.intensity.into()) == Some(best);
@@ -139,11 +147,12 @@ fn check_header(header: &VotesHeader, votes: &[Vote]) -> Result<(), PeakError> {
 }
 
 fn contradicts(header: &VotesHeader, votes: &[Vote]) -> PeakError {
-    PeakError::Best {
-        best: header.best,
-        highest_possible: header.highest_possible,
-        first: votes.first().map(|vote| vote.intensity),
-    }
+    let (best, highest_possible) = (header.best, header.highest_possible);
+    let first = votes.first().map(|vote| vote.intensity);
+    PeakError::Votes(format!(
+        "best is {best} of {highest_possible} possible, and the first vote has {first:?}: they \
+         must be 1 or more, the first two rising and the last two equal"
+    ))
 }
 
 fn check_poses(
@@ -159,13 +168,10 @@ fn check_poses(
     };
     match votes.iter().enumerate().find(|(_, vote)| !is_known(vote)) {
         None => Ok(()),
-        Some((index, &vote)) => Err(PeakError::Pose {
-            index,
-            vote,
-            width,
-            height,
-            headings,
-        }),
+        Some((index, &Vote { x, y, heading, .. })) => Err(PeakError::Votes(format!(
+            "vote {index} is for cell {x}, {y} and heading {heading}: {width} x {height} cells \
+             were searched at {headings} headings"
+        ))),
     }
 }
 
@@ -174,11 +180,10 @@ fn check_order(votes: &[Vote]) -> Result<(), PeakError> {
     let mut neighbours = (1..).zip(votes.iter().zip(votes.iter().skip(1)));
     match neighbours.find(|(_, (previous, vote))| order(previous) >= order(vote)) {
         None => Ok(()),
-        Some((index, (&previous, &vote))) => Err(PeakError::Order {
-            index,
-            previous,
-            vote,
-        }),
+        Some((index, (previous, vote))) => Err(PeakError::Votes(format!(
+            "vote {index} is {vote:?}, after {previous:?}: intensities must fall, and equal ones \
+             rise by heading, y and x"
+        ))),
     }
 }
 
@@ -292,9 +297,7 @@ mod tests {
         };
         assert_eq!(mounted(1, 0.25).unwrap(), Some(Pose::new(0.5, 0.0, 0.25)));
         assert_eq!(mounted(0, f64::NAN).unwrap(), None);
-        assert!(matches!(
-            mounted(1, f64::NAN),
-            Err(PeakError::Mount { found }) if found.x == 0.5
-        ));
+        let error = mounted(1, f64::NAN).unwrap_err().to_string();
+        assert!(error.starts_with("base_from_laser is x 0.5 m"), "{error}");
     }
 }
