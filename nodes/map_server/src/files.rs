@@ -1,4 +1,4 @@
-//! Detects changes of a map's two files without reading the image.
+//! Detects changes of the files of a map or of a set, without reading the images.
 //!
 //! Polling, unlike listening for events, works on every file system, including network ones, and
 //! with every way in which editors replace files. The contents are not checked here.
@@ -9,33 +9,29 @@ use std::os::unix::fs::MetadataExt;
 use std::path::{Path, PathBuf};
 
 use serde::Deserialize;
+use transport::with_causes;
 
 /// Number of bytes read of a description; a valid one has a few hundred.
 const MAX_YAML_BYTES: u64 = 64 << 10;
 
 /// Identity of a file's state.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub(crate) struct Fingerprint {
-    pub(crate) device: u64,
-    /// Inode number; it changes if another file takes the place by renaming.
-    pub(crate) inode: u64,
-    pub(crate) size: u64,
-    pub(crate) modified_s: i64,
-    pub(crate) modified_ns: i64,
-}
-
-/// State of both files at one moment; `None` for a missing file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) struct Seen {
-    pub(crate) yaml: Option<Fingerprint>,
-    pub(crate) image: Option<Fingerprint>,
+struct Fingerprint {
+    device: u64,
+    /// Inode number; it changes if another file takes the place by renaming.
+    inode: u64,
+    size: u64,
+    modified_s: i64,
+    modified_ns: i64,
 }
 
-#[derive(Debug)]
-pub(crate) struct Files {
-    yaml: PathBuf,
-    yaml_read: Option<Fingerprint>,
-    image: Option<PathBuf>,
+/// State of the files at one moment.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub(crate) struct Seen {
+    /// Each file with its state; `None` for a missing one.
+    files: Vec<(PathBuf, Option<Fingerprint>)>,
+    /// Error that makes a set invalid; none of its maps is then watched.
+    problem: Option<String>,
 }
 
 #[derive(Deserialize)]
@@ -43,31 +39,40 @@ struct Named {
     image: String,
 }
 
-impl Files {
-    pub(crate) fn new(yaml: &Path) -> Self {
-        Files {
-            yaml: yaml.into(),
-            yaml_read: None,
-            image: None,
+impl Seen {
+    /// Looks at the description of a map, and at the image that it names.
+    pub(crate) fn of_map(yaml: &Path) -> Self {
+        let mut seen = Seen::default();
+        seen.add_map(yaml);
+        seen
+    }
+
+    /// Looks at the list of a set, if there is one, and at each map that it names; if `on` is not
+    /// empty, only at the maps and floors with these names. The set is resolved each time, because
+    /// no known file changes when a folder is added or filled later. Other files are ignored.
+    pub(crate) fn of_set(path: &Path, on: &[String]) -> Self {
+        let mut seen = Seen::default();
+        seen.add(&map::list_of(path));
+        match map::set_of(path).and_then(|set| set.select(on)) {
+            Ok(set) => set.maps.iter().for_each(|map| seen.add_map(&map.yaml)),
+            Err(error) => seen.problem = Some(with_causes(&error)),
+        }
+        seen
+    }
+
+    fn add_map(&mut self, yaml: &Path) {
+        self.add(yaml);
+        if let Some(image) = named_image(yaml) {
+            self.add(&image);
         }
     }
 
-    /// Returns the current state of the files. While the description cannot be read, the image
-    /// named before is watched.
-    pub(crate) fn look(&mut self) -> Seen {
-        let yaml = fingerprint(&self.yaml);
-        if yaml != self.yaml_read {
-            self.yaml_read = yaml;
-            self.image = named_image(&self.yaml).or(self.image.take());
-        }
-        Seen {
-            yaml,
-            image: self.image.as_deref().and_then(fingerprint),
-        }
+    fn add(&mut self, path: &Path) {
+        self.files.push((path.to_owned(), fingerprint(path)));
     }
 }
 
-pub(crate) fn fingerprint(path: &Path) -> Option<Fingerprint> {
+fn fingerprint(path: &Path) -> Option<Fingerprint> {
     let metadata = fs::metadata(path).ok()?;
     Some(Fingerprint {
         device: metadata.dev(),
@@ -91,34 +96,90 @@ fn named_image(yaml: &Path) -> Option<PathBuf> {
 mod tests {
     use super::*;
 
+    fn write(folder: &Path, name: &str, text: &str) {
+        let path = folder.join(name);
+        fs::create_dir_all(path.parent().unwrap()).unwrap();
+        fs::write(path, text).unwrap();
+    }
+
     #[test]
     fn sees_both_files_change_and_follows_the_name() {
         let folder = tempfile::tempdir().unwrap();
-        let at = |name: &str| folder.path().join(name);
-        let mut files = Files::new(&at("a.yaml"));
-        let nothing = files.look();
-        assert_eq!((nothing.yaml, nothing.image), (None, None));
-
-        fs::write(at("a.yaml"), "image: one.pgm\nresolution: 0.05\n").unwrap();
-        fs::write(at("one.pgm"), "1").unwrap();
-        let one = files.look();
-        assert_eq!(one.image.unwrap().size, 1);
-        assert_eq!(files.look(), one);
-
-        fs::write(at("one.pgm"), "22").unwrap();
-        let grown = files.look();
-        assert_eq!((grown.yaml, grown.image.unwrap().size), (one.yaml, 2));
-
+        let at = folder.path();
+        let look = || Seen::of_map(&at.join("a.yaml"));
+        let nothing = look();
+        write(at, "a.yaml", "image: one.pgm\nresolution: 0.05\n");
+        let without_image = look();
+        assert_ne!(without_image, nothing);
+        write(at, "one.pgm", "1");
+        let one = look();
+        assert_ne!(one, without_image);
+        assert_eq!(look(), one);
+        write(at, "one.pgm", "22");
+        let grown = look();
+        assert_ne!(grown, one);
         // Another file of the same size with the same name.
-        fs::write(at("new"), "33").unwrap();
-        fs::rename(at("new"), at("one.pgm")).unwrap();
-        assert_ne!(files.look(), grown);
+        write(at, "new", "33");
+        fs::rename(at.join("new"), at.join("one.pgm")).unwrap();
+        assert_ne!(look(), grown);
+        write(at, "a.yaml", "image: two.pgm\n");
+        let two = look();
+        write(at, "one.pgm", "4444");
+        assert_eq!(look(), two);
+        write(at, "two.pgm", "4444");
+        assert_ne!(look(), two);
+        write(at, "a.yaml", "image: [");
+        assert_eq!(look().files.len(), 1);
+    }
 
-        fs::write(at("two.pgm"), "4444").unwrap();
-        fs::write(at("a.yaml"), "image: two.pgm\n").unwrap();
-        assert_eq!(files.look().image.unwrap().size, 4);
-        // With a broken description, the image named before is still watched.
-        fs::write(at("a.yaml"), "image: [").unwrap();
-        assert_eq!(files.look().image.unwrap().size, 4);
+    #[test]
+    fn maps_of_a_folder_are_seen_as_they_come_and_other_files_are_not() {
+        let folder = tempfile::tempdir().unwrap();
+        let at = folder.path();
+        let look = || Seen::of_set(at, &[]);
+        write(at, "ground/map.yaml", "image: map.pgm\n");
+        let one = look();
+        assert_eq!(look(), one);
+        write(at, "notes.txt", "1");
+        write(at, "params.yaml", "amcl: 1\n");
+        fs::create_dir(at.join("first")).unwrap();
+        assert_eq!(look(), one);
+        write(at, "first/map.yaml", "image: map.pgm\n");
+        let two = look();
+        assert_ne!(two, one);
+        write(at, "first/map.pgm", "1");
+        assert_ne!(look(), two);
+        fs::remove_dir_all(at.join("first")).unwrap();
+        assert_eq!(look(), one);
+    }
+
+    #[test]
+    fn the_maps_that_a_list_names_are_seen_and_a_list_that_is_gone() {
+        let folder = tempfile::tempdir().unwrap();
+        let at = folder.path();
+        let list = at.join("maps.yaml");
+        let look = || Seen::of_set(&list, &["ground".to_owned()]);
+        let named = |map: &str| {
+            let other = "{name: yard, map: yard.yaml}";
+            let text = format!("maps: [{{name: ground, map: {map}}}, {other}]\n");
+            write(at, "maps.yaml", &text);
+        };
+        for map in ["old", "new", "yard"] {
+            write(at, &format!("{map}.yaml"), "image: map.pgm\n");
+        }
+        named("old.yaml");
+        let old = look();
+        write(at, "new.yaml", "image: other.pgm\n");
+        write(at, "yard.yaml", "image: other.pgm\n");
+        assert_eq!(look(), old);
+        named("new.yaml");
+        let new = look();
+        write(at, "old.yaml", "image: other.pgm\n");
+        assert_eq!(look(), new);
+        write(at, "new.yaml", "image: yet_another.pgm\n");
+        assert_ne!(look(), new);
+        fs::remove_file(&list).unwrap();
+        let gone = look();
+        assert!(gone.problem.is_some() && gone != new);
     }
 }

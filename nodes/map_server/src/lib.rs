@@ -9,7 +9,6 @@ mod config;
 mod error;
 mod files;
 mod run;
-mod set_files;
 mod shown;
 mod watch;
 

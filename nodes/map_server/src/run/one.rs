@@ -9,14 +9,13 @@ use recording::Recording;
 use transport::{Flow, Graph, Health, Publisher, TransportError, with_causes};
 
 use super::{TICK, header, now, reject};
-use crate::files::Files;
+use crate::files::Seen;
 use crate::watch::{Look, Watch};
 use crate::{Config, MapServerError};
 
 pub(super) fn run(graph: &Graph, config: &Config) -> Result<(), MapServerError> {
     // Without a map file, the recording is the only source, and is not watched.
     let path = config.map.as_deref().unwrap_or(Path::new(""));
-    let mut files = Files::new(path);
     let mut server = Server {
         publisher: graph.publisher()?,
         health: graph.health()?,
@@ -25,7 +24,7 @@ pub(super) fn run(graph: &Graph, config: &Config) -> Result<(), MapServerError> 
         map_id: 0,
     };
     // Checked before loading, so that changes in between are noticed.
-    let mut watch = Watch::new(files.look());
+    let mut watch = Watch::new(Seen::of_map(path));
     server.health.state(NodeState::Busy)?;
     let (first, is_watched) = first(config)?;
     match first {
@@ -36,10 +35,10 @@ pub(super) fn run(graph: &Graph, config: &Config) -> Result<(), MapServerError> 
         Err(error) => server.refuse(&error, path)?,
     }
     graph.run(&[], TICK, |_| {
-        if is_watched && watch.look(files.look()) == Look::Settled {
+        if is_watched && watch.look(Seen::of_map(path)) == Look::Settled {
             server.health.state(NodeState::Busy)?;
             let outcome = load(config, path);
-            if watch.judged(files.look()) {
+            if watch.judged(Seen::of_map(path)) {
                 server.judge(outcome, path)?;
             }
         }

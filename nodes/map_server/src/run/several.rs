@@ -8,7 +8,7 @@ use messages::{MapHeader, MapSet, NodeState, PoseHeader, Stamp, Transition, topi
 use transport::{Flow, Graph, Health, Loan, Publisher, TransportError, with_causes};
 
 use super::{TICK, header, now, reject, wait_for};
-use crate::set_files::SetFiles;
+use crate::files::Seen;
 use crate::shown::Shown;
 use crate::watch::{Look, Watch};
 use crate::{Config, MapServerError};
@@ -16,9 +16,9 @@ use crate::{Config, MapServerError};
 pub(super) fn run(graph: &Graph, config: &Config, path: &Path) -> Result<(), MapServerError> {
     let mut health = graph.health()?;
     health.state(NodeState::Busy)?;
-    let mut files = SetFiles::new(path, &config.on);
+    let look = || Seen::of_set(path, &config.on);
     // Checked before loading, so that changes in between are noticed.
-    let mut watch = Watch::new(files.look());
+    let mut watch = Watch::new(look());
     let first = load(config, path);
     let poses = graph.subscriber::<topic::Tracked>()?;
     // Opened before the publisher of `map`, so that its subscribers see that the map is part of a
@@ -42,10 +42,10 @@ pub(super) fn run(graph: &Graph, config: &Config, path: &Path) -> Result<(), Map
         while let Some(pose) = poses.receive()? {
             server.follow(pose.header())?;
         }
-        if wake.tick && watch.look(files.look()) == Look::Settled {
+        if wake.tick && watch.look(look()) == Look::Settled {
             server.health.state(NodeState::Busy)?;
             let outcome = load(config, path);
-            if watch.judged(files.look()) {
+            if watch.judged(look()) {
                 server.judge(outcome, path)?;
             }
         }
