@@ -46,11 +46,14 @@ pub(crate) fn as_recording(
     let written = database.and_then(|database| Ok((write(&database, &mut writer)?, database)));
     let (found, database) = written.map_err(|fault| fault.of(&listed.path))?;
     let damage = match listed.messages {
-        Some(claimed) if claimed > found && database.lacks_log => Some(Damage::MissingLog {
-            log: database::log_of(&listed.path).display().to_string(),
-            claimed,
-            found,
-        }),
+        Some(claimed) if claimed > found && database.lacks_log => {
+            let log = database::log_of(&listed.path);
+            let log = log.display();
+            Some(Damage::Other(format!(
+                "metadata.yaml counts {claimed} messages, {found} are there: the others are in \
+                 {log}, which is missing; copy it along"
+            )))
+        }
         _ => None,
     };
     let buffered = writer.finish()?;
@@ -244,12 +247,13 @@ mod tests {
             .query_row("PRAGMA journal_mode = WAL", (), |_| Ok(()))
             .unwrap();
         for name in [folder.path(), &path] {
-            let expected = Damage::MissingLog {
-                log: format!("{}-wal", path.display()),
-                claimed: all as u64 + 3,
-                found: all as u64,
-            };
-            assert_eq!(lost(name), Some(expected));
+            let expected = format!(
+                "metadata.yaml counts {} messages, {all} are there: the others are in {}-wal, ",
+                all + 3,
+                path.display()
+            );
+            let lost = lost(name).unwrap().to_string();
+            assert!(lost.starts_with(&expected), "{lost}");
         }
         describe(all);
         assert_eq!(lost(&path), None);

@@ -10,7 +10,7 @@ use crate::Damage;
 use crate::chunk::Chunk;
 use crate::feed::{each_record, part_options};
 use crate::parse::reason;
-use crate::registry::Registry;
+use crate::registry::{Registry, undefined};
 
 /// A part of the file that holds messages: a chunk, or a run of messages outside of chunks.
 #[derive(Debug, Clone)]
@@ -74,12 +74,9 @@ impl Block {
             ),
         })?;
         let id = header.channel_id;
-        registry.channel(id).ok_or(Damage::Undefined {
-            at,
-            kind: "message",
-            missing: "channel",
-            id,
-        })?;
+        if registry.channel(id).is_none() {
+            return Err(undefined(at, "message", "channel", id));
+        }
         self.unsorted += u64::from(log_time < self.newest_ns);
         self.newest_ns = log_time;
         self.first_ns = self.first_ns.min(log_time);

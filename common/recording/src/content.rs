@@ -92,18 +92,15 @@ pub(crate) fn is_packed(bytes: &[u8]) -> bool {
     bytes.starts_with(ZSTD) || is_skipped(bytes)
 }
 
-pub(crate) fn foreign(path: &Path, what: &'static str, advice: &str) -> RecordingError {
+pub(crate) fn foreign(path: &Path, what: &str, advice: &str) -> RecordingError {
     let file = path.display().to_string();
     let bare = path.with_extension("").display().to_string();
     let advice = match advice.contains('`') {
         true => advice.to_owned(),
         false => format!("unpack it with `{advice}`"),
     };
-    RecordingError::Foreign {
-        path: path.to_owned(),
-        what,
-        advice: advice.replace("FILE", &file).replace("BARE", &bare),
-    }
+    let advice = advice.replace("FILE", &file).replace("BARE", &bare);
+    RecordingError::Unfit(format!("{file} is {what}: {advice}"))
 }
 
 #[cfg(test)]

@@ -78,12 +78,13 @@ impl Recording {
         let mount = tree.base_from(laser);
         match mount {
             Some(mount) if mount.tilt_degrees > MAX_TILT_DEGREES => {
-                Err(RecordingError::TiltedLaser {
-                    path: self.path().to_owned(),
-                    laser: laser.to_owned(),
-                    base: mount.base_frame,
-                    tilt_degrees: mount.tilt_degrees,
-                })
+                Err(RecordingError::Unfit(format!(
+                    "{}: {laser} is tilted by {:.0} degrees against {}; allowed: 10, also upside \
+                     down, for what it sees is not the plane of the map",
+                    self.path().display(),
+                    mount.tilt_degrees,
+                    mount.base_frame
+                )))
             }
             mount => Ok(Mounted { mount, notes }),
         }
@@ -101,12 +102,11 @@ impl Recording {
         }
         if tree.base_from(laser).is_none() {
             if let Some((parent, child, error)) = tree.broken_below(laser) {
-                return Err(RecordingError::BrokenMount {
-                    path: self.path().to_owned(),
-                    laser: laser.to_owned(),
-                    transform: format!("from {parent} to {child}"),
-                    reason: error.to_string(),
-                });
+                return Err(RecordingError::Unfit(format!(
+                    "{}: the mount of {laser} is not known, for the transform from {parent} to \
+                     {child} is invalid: {error}",
+                    self.path().display()
+                )));
             }
             notes.extend(self.add_still(&mut tree, laser)?);
         }
@@ -216,10 +216,10 @@ impl Recording {
                 }
                 Entry::Occupied(other) if *other.get() == truth => {}
                 Entry::Occupied(_) => {
-                    return Err(RecordingError::TwoTruths {
-                        path: self.path().to_owned(),
-                        stamp_ns,
-                    });
+                    return Err(RecordingError::Unfit(format!(
+                        "{}: two ground truths are stamped {stamp_ns} ns, and differ",
+                        self.path().display()
+                    )));
                 }
             }
         }

@@ -10,8 +10,6 @@ pub const MAX_CHUNK_BYTES: u64 = 2 * map::MAX_CELLS;
 /// Damage of a file: its kind and position. Offsets are bytes from the start of the file.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum Damage {
-    #[error("the file starts with {found}; a recording starts with \"\\x89MCAP0\\r\\n\"")]
-    NotMcap { found: String },
     #[error(
         "the file is cut short: it ends at byte {length}, within the record that starts at byte {at}"
     )]
@@ -23,56 +21,15 @@ pub enum Damage {
         kind: &'static str,
         reason: String,
     },
-    #[error(
-        "the chunk at byte {at} is damaged: its checksum is {found:08x}, written was {saved:08x}"
-    )]
-    ChunkChecksum { at: u64, saved: u32, found: u32 },
-    #[error("the chunk at byte {at} claims {claimed} bytes; at most {MAX_CHUNK_BYTES} are allowed")]
-    ChunkSize { at: u64, claimed: u64 },
-    #[error("the chunk at byte {at} claims {claimed} bytes but holds {found}")]
-    ChunkContent { at: u64, claimed: u64, found: u64 },
-    #[error("the chunk at byte {at} does not unpack: {reason}")]
-    Unpack { at: u64, reason: String },
-    #[error("the chunk at byte {at} is packed as {found:?}; allowed: zstd, lz4, or not at all")]
-    Compression { at: u64, found: String },
-    #[error("the {kind} record at byte {at} defines number {id} again, differently")]
-    Conflict {
-        /// Start of the second record, or of the chunk that it is in.
-        at: u64,
-        kind: &'static str,
-        id: u16,
-    },
-    #[error(
-        "the {kind} record at byte {at} refers to {missing} {id}, which is not defined before it"
-    )]
-    Undefined {
-        /// Start of the record, or of the chunk that it is in.
-        at: u64,
-        kind: &'static str,
-        missing: &'static str,
-        id: u16,
-    },
+    #[error("the chunk at byte {at} {reason}")]
+    Chunk { at: u64, reason: String },
     #[error(
         "the data, bytes 0 to {end}, is damaged: its checksum is {found:08x}, written was {saved:08x}"
     )]
     DataChecksum { end: u64, saved: u32, found: u32 },
-    #[error(
-        "the summary at byte {at} is damaged: its checksum is {found:08x}, written was {saved:08x}"
-    )]
-    SummaryChecksum { at: u64, saved: u32, found: u32 },
-    #[error("the summary counts {claimed} messages, {found} are there")]
-    MessageCount { claimed: u64, found: u64 },
-    #[error(
-        "metadata.yaml counts {claimed} messages, {found} are there: the others are in {log}, which \
-         is missing; copy it along"
-    )]
-    MissingLog {
-        log: String,
-        claimed: u64,
-        found: u64,
-    },
-    #[error("the recording's last 8 bytes should begin at byte {at}, but found is {found}")]
-    End { at: u64, found: String },
+    /// Any other damage, with its position.
+    #[error("{0}")]
+    Other(String),
 }
 
 pub(crate) fn shown(bytes: &[u8]) -> String {

@@ -18,12 +18,6 @@ pub enum RecordingError {
         readable: u64,
         damage: Damage,
     },
-    #[error("{} is {what}: {advice}", path.display())]
-    Foreign {
-        path: PathBuf,
-        what: &'static str,
-        advice: String,
-    },
     #[error("{} cannot be unpacked: {reason}", path.display())]
     Unpack { path: PathBuf, reason: String },
     /// A rosbag2 bag with missing files, or an SQLite bag that cannot be read or whose content is
@@ -60,47 +54,9 @@ pub enum RecordingError {
         kind: Kind,
         found: Vec<String>,
     },
-    #[error("{} has no {what} on {topic}; it has {}", path.display(), listed(found))]
-    NoSuchTopic {
-        path: PathBuf,
-        what: String,
-        topic: String,
-        found: Vec<String>,
-    },
-    #[error("{} has several channels of {kind}, {}, and none is called {name}: name one with {}", path.display(), listed(found), kind.option())]
-    SeveralTopics {
-        path: PathBuf,
-        kind: Kind,
-        name: &'static str,
-        found: Vec<String>,
-    },
-    #[error("{}: no transform says where {frame:?}, the frame of {topic}, sits on the robot: give its pose by --cloud-mount X,Y,Z,YAW_DEG", path.display())]
-    NoCloudMount {
-        path: PathBuf,
-        topic: String,
-        frame: String,
-    },
-    #[error("{}: the mount of {laser} is not known, for the transform {transform} is invalid: {reason}", path.display())]
-    BrokenMount {
-        path: PathBuf,
-        laser: String,
-        transform: String,
-        reason: String,
-    },
-    #[error("{}: {laser} is tilted by {tilt_degrees:.0} degrees against {base}; allowed: 10, also upside down, for what it sees is not the plane of the map", path.display())]
-    TiltedLaser {
-        path: PathBuf,
-        laser: String,
-        base: String,
-        /// Angle between their z axes, or to the opposite axis if that is smaller, in degrees.
-        tilt_degrees: f64,
-    },
-    #[error("{}: two ground truths are stamped {stamp_ns} ns, and differ", path.display())]
-    TwoTruths {
-        path: PathBuf,
-        /// Nanoseconds since 1970.
-        stamp_ns: i64,
-    },
+    /// Recording without what is asked of it, by its name.
+    #[error("{0}")]
+    Unfit(String),
     #[error("cannot write the recording: {reason}")]
     Write { reason: String },
 }
@@ -111,6 +67,12 @@ impl RecordingError {
             path: path.to_owned(),
             source,
         }
+    }
+
+    /// Error of a recording without such messages on a topic, with the channels that it has.
+    pub(crate) fn lacks(path: &Path, what: &str, topic: &str, found: &[String]) -> Self {
+        let (path, found) = (path.display(), listed(found));
+        RecordingError::Unfit(format!("{path} has no {what} on {topic}; it has {found}"))
     }
 
     /// Topic of the message that does not decode, if that is the error.

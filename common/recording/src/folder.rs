@@ -5,7 +5,6 @@
 //! with numbers in the names compared by value. A part may be compressed (`.zstd`) or not, also if
 //! the list says otherwise.
 
-use std::cmp::Ordering;
 use std::path::{Component, Path, PathBuf};
 
 use serde::Deserialize;
@@ -162,7 +161,7 @@ fn unnamed(folder: &Path) -> Result<Vec<Listed>, RecordingError> {
     let all = paths.clone();
     let is_twice = |path: &Path| without_ending(path).is_some_and(|path| all.contains(&path));
     paths.retain(|path| storage(path).is_some() && path.is_file() && !is_twice(path));
-    paths.sort_by(|a, b| natural_order(&shown(a), &shown(b)));
+    paths.sort_by_cached_key(|path| sort_key(&shown(path)));
     // A disk that was full for a while leaves empty parts between others. An empty part at the end
     // is kept, so that reading reports it.
     let is_empty = |path: &PathBuf| std::fs::metadata(path).is_ok_and(|found| found.len() == 0);
@@ -204,34 +203,17 @@ fn storage(path: &Path) -> Option<String> {
     ["mcap", "db3"].contains(&ending.as_str()).then_some(ending)
 }
 
-/// Compares numbers in names by value: `r_2` comes before `r_10`.
-fn natural_order(a: &str, b: &str) -> Ordering {
-    let (mut a, mut b) = (a, b);
-    while let (Some(first), Some(second)) = (a.chars().next(), b.chars().next()) {
-        let is_number = first.is_ascii_digit() && second.is_ascii_digit();
-        let order = match is_number {
-            true => {
-                let ((x, a_left), (y, b_left)) = (number(a), number(b));
-                (a, b) = (a_left, b_left);
-                (x.len(), x).cmp(&(y.len(), y))
-            }
-            false => {
-                (a, b) = (&a[first.len_utf8()..], &b[second.len_utf8()..]);
-                first.cmp(&second)
-            }
-        };
-        if order.is_ne() {
-            return order;
+/// Returns a key by which numbers in names count by their value: `r_2` comes before `r_10`.
+fn sort_key(name: &str) -> String {
+    let padded = |piece: &str| {
+        let rest = piece.trim_start_matches(|c: char| c.is_ascii_digit());
+        match &piece[..piece.len() - rest.len()] {
+            "" => rest.to_owned(),
+            digits => format!("{:0>20}{rest}", digits.trim_start_matches('0')),
         }
-    }
-    a.len().cmp(&b.len())
-}
-
-/// Splits off the leading digits, without leading zeros, from the rest.
-fn number(text: &str) -> (&str, &str) {
-    let end = text.find(|c: char| !c.is_ascii_digit());
-    let (digits, rest) = text.split_at(end.unwrap_or(text.len()));
-    (digits.trim_start_matches('0'), rest)
+    };
+    let pieces = name.split_inclusive(|c: char| !c.is_ascii_digit());
+    pieces.map(padded).collect()
 }
 
 fn shown(path: &Path) -> String {
@@ -376,7 +358,7 @@ mod tests {
     #[test]
     fn numbers_count_by_their_value() {
         let mut names = ["r_10", "r_9b", "r_9", "r_009a", "q", "r_"];
-        names.sort_by(|a, b| natural_order(a, b));
+        names.sort_by_key(|name| sort_key(name));
         assert_eq!(names, ["q", "r_", "r_9", "r_009a", "r_9b", "r_10"]);
     }
 }

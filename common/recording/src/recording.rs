@@ -225,12 +225,12 @@ impl Recording {
         let mut channels = self.channels.iter().filter(of_kind);
         let Some(channel) = channels.clone().find(|channel| &*channel.topic == topic) else {
             let found: Vec<String> = channels.by_ref().map(|c| c.topic.to_string()).collect();
-            return Err(RecordingError::NoSuchTopic {
-                path: self.path.clone(),
-                what: kind.to_string(),
-                topic: topic.to_owned(),
-                found,
-            });
+            return Err(RecordingError::lacks(
+                &self.path,
+                &kind.to_string(),
+                topic,
+                &found,
+            ));
         };
         self.preferred.insert(kind, channel.topic.clone());
         Ok(())

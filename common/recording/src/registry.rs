@@ -112,21 +112,24 @@ impl Registry {
 
 fn refused(error: &McapError, at: u64, kind: &'static str, id: u16) -> Damage {
     match *error {
-        McapError::ConflictingSchemas(_) | McapError::ConflictingChannels(_) => {
-            Damage::Conflict { at, kind, id }
-        }
-        McapError::UnknownSchema(_, id) => Damage::Undefined {
-            at,
-            kind,
-            missing: "schema",
-            id,
-        },
+        McapError::ConflictingSchemas(_) | McapError::ConflictingChannels(_) => Damage::Other(
+            format!("the {kind} record at byte {at} defines number {id} again, differently"),
+        ),
+        McapError::UnknownSchema(_, id) => undefined(at, kind, "schema", id),
         ref other => Damage::Record {
             at,
             kind,
             reason: reason(other),
         },
     }
+}
+
+/// Damage of a record at byte `at`, or in the chunk there, that refers to what no record before it
+/// defines.
+pub(crate) fn undefined(at: u64, kind: &str, missing: &str, id: u16) -> Damage {
+    Damage::Other(format!(
+        "the {kind} record at byte {at} refers to {missing} {id}, which is not defined before it"
+    ))
 }
 
 #[cfg(test)]

@@ -16,23 +16,24 @@ impl Recording {
             return Ok(());
         };
         let Some(frame) = self.cloud_frame(topic)? else {
-            return Err(RecordingError::NoSuchTopic {
-                path: self.path().to_owned(),
-                what: "point cloud".to_owned(),
-                topic: topic.clone(),
-                found: self.described_channels(),
-            });
+            let found = self.described_channels();
+            return Err(RecordingError::lacks(
+                self.path(),
+                "point cloud",
+                topic,
+                &found,
+            ));
         };
         let (base_frame, mount, notes) = match options.cloud_mount {
             Some(given) => ("base_link".to_owned(), given, Vec::new()),
             None => {
                 let (tree, notes) = self.transforms_of(&frame)?;
                 let Some((base, mount)) = tree.cloud_mount(None, &frame) else {
-                    return Err(RecordingError::NoCloudMount {
-                        path: self.path().to_owned(),
-                        topic: topic.clone(),
-                        frame,
-                    });
+                    return Err(RecordingError::Unfit(format!(
+                        "{}: no transform says where {frame:?}, the frame of {topic}, sits on the \
+                         robot: give its pose by --cloud-mount X,Y,Z,YAW_DEG",
+                        self.path().display()
+                    )));
                 };
                 (base, mount, notes)
             }

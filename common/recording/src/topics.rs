@@ -28,12 +28,14 @@ pub(crate) fn choose<'a>(
         (_, None) if kind == Kind::PoseStamped => Ok(None),
         ([], _) => Ok(None),
         ([(_, own)], _) => Ok(Some(own.clone())),
-        (several, None) => Err(RecordingError::SeveralTopics {
-            path: path.to_owned(),
-            kind,
-            name,
-            found: several.iter().map(|(topic, _)| topic.clone()).collect(),
-        }),
+        (several, None) => {
+            let found: Vec<&str> = several.iter().map(|(topic, _)| &**topic).collect();
+            let (path, found, option) = (path.display(), found.join(", "), kind.option());
+            Err(RecordingError::Unfit(format!(
+                "{path} has several channels of {kind}, {found}, and none is called {name}: name \
+                 one with {option}"
+            )))
+        }
     }
 }
 

@@ -167,18 +167,25 @@ impl<'a> Pass<'a> {
             return Ok(());
         };
         let claimed = statistics.message_count;
-        let found = self.survey.blocks.iter().map(Block::messages).sum();
+        let found: u64 = self.survey.blocks.iter().map(Block::messages).sum();
         if claimed == found {
             return Ok(());
         }
-        Err(Damage::MessageCount { claimed, found })
+        Err(Damage::Other(format!(
+            "the summary counts {claimed} messages, {found} are there"
+        )))
     }
 
     /// Converts an error of the reader at the record at byte `at`; `left` is the number of bytes
     /// that it was not given.
     fn damage(&self, error: &McapError, at: usize, left: usize) -> Damage {
         let bytes = self.bytes;
-        let from = |at| shown(bytes.get(at..).unwrap_or_default());
+        let end = |from: usize| {
+            let found = shown(bytes.get(from..).unwrap_or_default());
+            Damage::Other(format!(
+                "the recording's last 8 bytes should begin at byte {at}, but found is {found}"
+            ))
+        };
         let (place, at, length) = (at, at as u64, bytes.len() as u64);
         let truncated = Damage::Truncated { length, at };
         match (error, self.part) {
@@ -195,20 +202,13 @@ impl<'a> Pass<'a> {
                 found: calculated,
             },
             (&McapError::BadSummaryCrc { saved, calculated }, Part::Summary { from }) => {
-                Damage::SummaryChecksum {
-                    at: from as u64,
-                    saved,
-                    found: calculated,
-                }
+                Damage::Other(format!(
+                    "the summary at byte {from} is damaged: its checksum is {calculated:08x}, \
+                     written was {saved:08x}"
+                ))
             }
-            (McapError::BadMagic, _) => Damage::End {
-                at,
-                found: from(place),
-            },
-            (McapError::BytesAfterEndMagic, _) => Damage::End {
-                at,
-                found: from(place + MAGIC.len()),
-            },
+            (McapError::BadMagic, _) => end(place),
+            (McapError::BytesAfterEndMagic, _) => end(place + MAGIC.len()),
             // The reader parses the data end and the footer itself.
             (other, _) => Damage::Record {
                 at,
