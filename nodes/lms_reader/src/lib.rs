@@ -2,12 +2,11 @@
 //!
 //! `sick` turns bytes into telegrams; `scan` and `lms2xx_scan` turn telegrams into messages;
 //! `cola_setup` and `lms2xx_setup` run the dialogue before scans are sent; `angles` decides which
-//! way the device looks; `clock` converts device time to host time. All of these are pure. `run`
+//! way the device looks; `clock` converts device time to host time. `run`
 //! reads from the device or a capture and publishes. The node starts the scans of a device but
 //! leaves its settings alone unless the configuration asks for others.
 
 mod angles;
-mod attempts;
 mod clock;
 mod cola_setup;
 mod config;
@@ -21,3 +20,6 @@ pub mod scan;
 pub use config::{Config, Rate, Reach};
 pub use error::LmsError;
 pub use run::run;
+
+/// Number of times that a command is sent before it counts as unanswered.
+const TRIES: u32 = 3;

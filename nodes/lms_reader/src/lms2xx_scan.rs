@@ -68,11 +68,11 @@ impl WholeScan<'_> {
         if first >= 1 && last <= all && expected == self.len() && expected > 0 {
             return Ok(first);
         }
-        Err(LmsError::Readings {
-            found: self.len(),
-            expected,
-            field: format!("those from {first} to {last} of {width_deg}° at {step}/100°"),
-        })
+        Err(LmsError::Other(format!(
+            "the device sent {} readings, {expected} are those from {first} to {last} of \
+             {width_deg}° at {step}/100°",
+            self.len()
+        )))
     }
 
     /// Writes the distances in metres, infinity for no return; `ranges` has one element per

@@ -24,7 +24,9 @@ pub fn run(graph: &Graph, config: &Config) -> Result<(), LmsError> {
         (Some(address), _, _) => tcp::run(&graph.name().resolve(address), config, &mut outlet),
         (None, Some(device), _) => serial::run(device, config, &mut outlet),
         (None, None, Some(path)) => capture::run(path, config, &mut outlet),
-        (None, None, None) => Err(LmsError::NoSource),
+        (None, None, None) => Err(LmsError::Other(
+            "neither a device (--tcp, --serial) nor a capture (--capture) is given".into(),
+        )),
     }
 }
 
@@ -40,6 +42,7 @@ fn keep(
         match listen(outlet) {
             Ok(()) => break,
             Err(error @ LmsError::Transport(_)) => return Err(error),
+            Err(_) if outlet.stopped() => break,
             Err(error) => outlet.lost(&error)?,
         }
         if outlet.sent > before {
@@ -65,7 +68,7 @@ fn now() -> Received {
 }
 
 fn failed(address: impl Display, what: &'static str, error: impl Into<std::io::Error>) -> LmsError {
-    LmsError::Device {
+    LmsError::Io {
         address: address.to_string(),
         what,
         source: error.into(),

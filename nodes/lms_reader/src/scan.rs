@@ -96,9 +96,10 @@ pub fn distances<'a>(data: &LmdScanData<'a>) -> Result<Channel<'a>, LmsError> {
     data.channels_16_bit.named(b"DIST1").ok_or_else(|| {
         let names = data.channels_16_bit.clone();
         let names: Vec<String> = names.map(|c| c.name.escape_ascii().to_string()).collect();
-        LmsError::NoDistances {
-            found: names.join(", "),
-        }
+        LmsError::Other(format!(
+            "the telegram has the 16-bit channels [{}], a scan needs DIST1",
+            names.join(", ")
+        ))
     })
 }
 
@@ -116,13 +117,13 @@ pub(crate) fn measured_ns(
 ) -> Result<i64, LmsError> {
     if settings.stamps == Stamps::Device {
         let unix_us = data.time.and_then(|time| time.unix_us());
-        return unix_us
-            .map(|us| us.saturating_mul(1000))
-            .ok_or_else(|| LmsError::NoTime {
-                found: data
-                    .time
-                    .map_or("it has no time".into(), |time| format!("{time:?}")),
-            });
+        return unix_us.map(|us| us.saturating_mul(1000)).ok_or_else(|| {
+            let found = data.time.map(|time| format!("{time:?}"));
+            LmsError::Other(format!(
+                "the telegram does not say the date and time of the scan (--stamps device): {}",
+                found.as_deref().unwrap_or("it has no time")
+            ))
+        });
     }
     let delay_ns = delay_ns(data)?;
     let sent_ns = clock.host_ns(data.time_of_transmission_us, received.monotonic_ns);
@@ -199,12 +200,14 @@ pub fn check(data: &LmdScanData<'_>, distances: &Channel<'_>) -> Result<(), LmsE
     ];
     match rules.into_iter().find(|(_, _, holds, _)| !holds) {
         None => Ok(()),
-        Some((field, found, _, allowed)) => Err(LmsError::Scan {
-            field,
-            found,
-            allowed,
-        }),
+        Some((field, found, _, allowed)) => Err(not_allowed(field, found, allowed)),
     }
+}
+
+fn not_allowed(field: &str, found: f64, allowed: &str) -> LmsError {
+    LmsError::Other(format!(
+        "`{field}` of channel DIST1 is {found}, allowed is {allowed}"
+    ))
 }
 
 fn delay_ns(data: &LmdScanData<'_>) -> Result<i64, LmsError> {
@@ -215,11 +218,12 @@ fn delay_ns(data: &LmdScanData<'_>) -> Result<i64, LmsError> {
     if delay_us <= LONGEST_DELAY_US {
         return Ok(i64::from(delay_us) * 1000);
     }
-    Err(LmsError::Scan {
-        field: "time from scan to transmission",
-        found: f64::from(delay_us) * 1e-6,
-        allowed: "0 to 1 s",
-    })
+    let found = f64::from(delay_us) * 1e-6;
+    Err(not_allowed(
+        "time from scan to transmission",
+        found,
+        "0 to 1 s",
+    ))
 }
 
 #[cfg(test)]

@@ -1,20 +1,22 @@
 //! The dialogue with a device that executes commands, and with one that does not.
 
-use sick::lms2xx::Unit;
+use sick::lms2xx::{Configuration, Unit};
 
 use super::*;
 
 /// Simulated device that executes commands and records them.
-struct Device {
+struct Simulated {
     baud: Baud,
     port: Baud,
     status: DeviceStatus,
     configuration: Configuration,
+    is_there: bool,
+    is_willing: bool,
     said: Vec<String>,
 }
 
-fn device(baud: Baud) -> Device {
-    Device {
+fn device(baud: Baud) -> Simulated {
+    Simulated {
         baud,
         port: Baud::B19200,
         status: DeviceStatus {
@@ -28,13 +30,15 @@ fn device(baud: Baud) -> Device {
             unit: Unit::Centimetre,
         },
         configuration: Configuration::new(RangeMode::Range8Fields, Unit::Centimetre),
+        is_there: true,
+        is_willing: true,
         said: Vec::new(),
     }
 }
 
-impl Device {
+impl Simulated {
     fn receive(&mut self, command: &Command<'_>) -> Option<Answer<'static>> {
-        if self.port != self.baud {
+        if self.port != self.baud || !self.is_there {
             return None;
         }
         self.said.push(format!("{command:?}"));
@@ -50,7 +54,7 @@ impl Device {
                 width_deg,
                 resolution_raw_1e2_deg,
             } => Answer::VariantSet {
-                done: true,
+                done: self.is_willing,
                 width_deg,
                 resolution_raw_1e2_deg,
             },
@@ -62,22 +66,22 @@ impl Device {
             other => panic!("{other:?}"),
         })
     }
+}
 
-    /// Runs the dialogue until the device sends scans.
-    fn speak(&mut self, setup: &mut Setup) -> Result<(), LmsError> {
-        let mut now_ns = 0;
-        while setup.format().is_none() {
-            now_ns += TIMEOUT_NS;
-            match setup.next(now_ns)? {
-                Action::Baud(baud) => self.port = baud,
-                Action::Send(command) => {
-                    if let Some(answer) = self.receive(&command) {
-                        setup.receive(&answer)?;
-                    }
-                }
-                Action::Wait => {}
-            }
-        }
+impl Device for Simulated {
+    fn ask<R>(
+        &mut self,
+        command: &Command<'static>,
+        _: Duration,
+        mut pick: impl FnMut(&Answer<'_>) -> Option<R>,
+    ) -> Result<Option<R>, LmsError> {
+        // The answer to another command changes nothing.
+        assert!(pick(&Answer::Other(&[0x92])).is_none());
+        Ok(self.receive(command).and_then(|answer| pick(&answer)))
+    }
+
+    fn switch(&mut self, baud: Baud) -> Result<(), LmsError> {
+        self.port = baud;
         Ok(())
     }
 }
@@ -86,15 +90,14 @@ impl Device {
 fn the_baud_rate_is_found_and_nothing_changed() {
     for baud in Baud::ALL {
         let mut device = device(baud);
-        let mut setup = Setup::new(Wanted::default(), None);
-        device.speak(&mut setup).unwrap();
-        assert_eq!((setup.baud(), device.port), (Some(baud), baud));
+        assert_eq!(find_baud(&mut device, None, None).unwrap(), baud);
         let expected = Format {
             range_mode: RangeMode::Range8Fields,
             width_deg: 180,
             resolution_raw_1e2_deg: 100,
         };
-        assert_eq!(setup.format(), Some(expected));
+        let format = set_up(&mut device, Wanted::default()).unwrap();
+        assert_eq!((format, device.port), (expected, baud));
         assert_eq!(device.said.len(), 5, "{:#?}", device.said);
     }
 }
@@ -112,15 +115,14 @@ fn requested_settings_are_set_and_read_back() {
         reach: Some(reach),
     };
     let mut device = device(Baud::B9600);
-    let mut setup = Setup::new(wanted, None);
-    device.speak(&mut setup).unwrap();
-    assert_eq!((device.baud, device.port), (Baud::B500000, Baud::B500000));
+    let found = find_baud(&mut device, wanted.baud, None).unwrap();
+    assert_eq!((found, device.baud), (Baud::B500000, Baud::B500000));
     let expected = Format {
         range_mode: RangeMode::Range32Field,
         width_deg: 100,
         resolution_raw_1e2_deg: 25,
     };
-    assert_eq!(setup.format(), Some(expected));
+    assert_eq!(set_up(&mut device, wanted).unwrap(), expected);
     let said = device.said.join("\n");
     assert!(
         said.contains("Installation") && said.contains("SetVariant"),
@@ -129,44 +131,23 @@ fn requested_settings_are_set_and_read_back() {
 }
 
 #[test]
-fn nobody_there_names_the_rates_that_were_tried() {
-    let mut setup = Setup::new(Wanted::default(), Some(Baud::B500000));
-    let mut now_ns = 0;
-    let error = loop {
-        now_ns += TIMEOUT_NS;
-        if let Err(error) = setup.next(now_ns) {
-            break error.to_string();
-        }
-    };
+fn silence_names_the_rates_that_were_tried() {
+    let mut device = device(Baud::B9600);
+    device.is_there = false;
+    let error = find_baud(&mut device, None, Some(Baud::B500000)).unwrap_err();
+    let error = error.to_string();
     assert!(error.contains("(500000, 38400, 9600, 19200)"), "{error}");
 }
 
 #[test]
 fn a_device_that_refuses_is_an_error() {
-    let mut device = device(Baud::B38400);
+    let mut device = device(Baud::B19200);
+    device.is_willing = false;
     let wanted = Wanted {
         width_deg: Some(100),
         ..Wanted::default()
     };
-    let mut setup = Setup::new(wanted, None);
-    let error = loop {
-        match setup.next(0).unwrap() {
-            Action::Baud(baud) => device.port = baud,
-            Action::Send(Command::SetVariant { .. }) => {
-                break setup.receive(&Answer::VariantSet {
-                    done: false,
-                    width_deg: 180,
-                    resolution_raw_1e2_deg: 100,
-                });
-            }
-            Action::Send(command) => {
-                let answer = device.receive(&command).unwrap();
-                setup.receive(&answer).unwrap();
-            }
-            Action::Wait => panic!("nothing to wait for"),
-        }
-    };
-    let error = error.unwrap_err().to_string();
+    let error = set_up(&mut device, wanted).unwrap_err().to_string();
     assert!(
         error.contains("did not change field and resolution"),
         "{error}"

@@ -7,6 +7,7 @@ use std::time::Instant;
 
 use sick::cola::{Answer, Encoding, Framer, Telegram, Value};
 
+use super::failed;
 use super::outlet::Outlet;
 use crate::pace::Pace;
 use crate::{Config, LmsError, Rate};
@@ -21,11 +22,15 @@ pub(super) fn run(path: &Path, config: &Config, outlet: &mut Outlet) -> Result<(
         }
         // Looping over a file without usable scans would spin forever.
         if outlet.sent == 0 {
-            return Err(LmsError::NoScans {
-                path: path.into(),
-                telegrams: outlet.telegrams,
-                reason: outlet.scan_refusal.take(),
-            });
+            let reason = outlet.scan_refusal.take();
+            return Err(LmsError::Other(format!(
+                "{}: no scan could be used, of {} telegrams; {}",
+                path.display(),
+                outlet.telegrams,
+                reason
+                    .as_deref()
+                    .unwrap_or("expected are CoLa telegrams `sSN LMDscandata`")
+            )));
         }
         if !config.looped {
             break;
@@ -42,10 +47,7 @@ fn play(
     pacer: &mut Option<(Instant, Pace)>,
     outlet: &mut Outlet,
 ) -> Result<(), LmsError> {
-    let failed = |source| LmsError::Capture {
-        path: path.into(),
-        source,
-    };
+    let failed = |error| failed(path.display(), "read the capture", error);
     let mut file = File::open(path).map_err(failed)?;
     let mut framer = Framer::new(encoding);
     let mut piece = [0; 1 << 14];

@@ -149,8 +149,12 @@ impl Outlet {
             scan::fill_ranges(&distances, clockwise, ranges);
         })?;
         let found = data.status;
-        self.judge(u16::from_be_bytes(found), || LmsError::DeviceStatus {
-            found,
+        self.judge(u16::from_be_bytes(found), || {
+            format!(
+                "the device reports status {} {} (0 0 is in order, 0 1 an error, 0 2 a dirty \
+                 window, 0 4 and 0 5 one that is too dirty)",
+                found[0], found[1]
+            )
         })?;
         Ok(())
     }
@@ -168,7 +172,23 @@ impl Outlet {
         };
         self.publish(header, scan.len(), |ranges| scan.fill_ranges(ranges))?;
         let code = if status.is_in_order() { 0 } else { status.0 };
-        self.judge(code.into(), || LmsError::LmsStatus { found: status })?;
+        self.judge(code.into(), || {
+            let implausible = match status.is_implausible() {
+                true => ", implausible values",
+                false => "",
+            };
+            let dirty = if status.is_polluted() {
+                ", a dirty window"
+            } else {
+                ""
+            };
+            format!(
+                "the device reports status {:#04x}: level {} (3 is an error, 4 a fatal \
+                 one){implausible}{dirty}",
+                status.0,
+                status.level()
+            )
+        })?;
         Ok(())
     }
 
@@ -232,14 +252,14 @@ impl Outlet {
     fn judge(
         &mut self,
         status: u16,
-        problem: impl FnOnce() -> LmsError,
+        problem: impl FnOnce() -> String,
     ) -> Result<(), TransportError> {
         if status != self.device_status {
             self.device_status = status;
             if status == 0 {
                 tracing::info!("the device works again");
             } else {
-                let problem = problem().to_string();
+                let problem = problem();
                 tracing::warn!("{problem}");
                 self.health.error(&problem)?;
             }

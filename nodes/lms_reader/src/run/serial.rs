@@ -10,8 +10,9 @@ use sick::lms2xx::{Answer, Baud, Command, PartialScans, Reply, ReplyFramer, Scan
 use super::failed;
 use super::outlet::{Outlet, SLICE};
 use crate::lms2xx_scan::WholeScan;
-use crate::lms2xx_setup::{Action, Format, Setup, Wanted};
-use crate::{Config, LmsError};
+use crate::lms2xx_setup::{Device, Format, Wanted, find_baud, set_up};
+use crate::scan::Received;
+use crate::{Config, LmsError, TRIES};
 
 /// Pause after each byte sent; the device needs 55 µs between two bytes.
 const BYTE_GAP: Duration = Duration::from_micros(60);
@@ -20,36 +21,31 @@ const BYTE_GAP: Duration = Duration::from_micros(60);
 pub(super) fn run(device: &Path, config: &Config, outlet: &mut Outlet) -> Result<(), LmsError> {
     let mut last_baud = None;
     super::keep(outlet, |outlet| {
-        let mut line = Line::open(device, config, last_baud)?;
-        let outcome = line.listen(outlet);
-        last_baud = line.setup.baud().or(last_baud);
+        let mut line = Line::open(device, config, outlet)?;
+        let outcome = line.listen(config, last_baud);
+        last_baud = line.baud.or(last_baud);
         outcome
     })
-}
-
-fn wanted(config: &Config) -> Wanted {
-    Wanted {
-        baud: config.baud,
-        width_deg: config.field.map(|deg| deg as u16),
-        resolution_raw_1e2_deg: config.resolution.map(|deg| (deg * 100.0) as u16),
-        reach: config.range,
-    }
 }
 
 struct Line<'a> {
     name: &'a Path,
     silence_s: f64,
     port: TTYPort,
-    setup: Setup,
+    /// Baud rate of the device, once it is known.
+    baud: Option<Baud>,
+    /// Format of the scans, once they are sent.
+    format: Option<Format>,
     framer: ReplyFramer,
     parts: Option<PartialScans>,
     last_data: Instant,
-    /// Buffer of the command to send, reused.
-    command: Vec<u8>,
+    /// Time of the last read.
+    received: Received,
+    outlet: &'a mut Outlet,
 }
 
 impl<'a> Line<'a> {
-    fn open(name: &'a Path, config: &Config, last_baud: Option<Baud>) -> Result<Self, LmsError> {
+    fn open(name: &'a Path, config: &Config, outlet: &'a mut Outlet) -> Result<Self, LmsError> {
         let path = name.to_string_lossy();
         let builder = serialport::new(path, Baud::B9600.rate()).timeout(SLICE);
         let port = builder
@@ -59,69 +55,59 @@ impl<'a> Line<'a> {
             name,
             silence_s: config.silence,
             port,
-            setup: Setup::new(wanted(config), last_baud),
+            baud: None,
+            format: None,
             framer: ReplyFramer::default(),
             parts: None,
             last_data: Instant::now(),
-            command: Vec::new(),
+            received: super::now(),
+            outlet,
         })
     }
 
     /// Reads until the stop flag is set; any other end is an error.
-    fn listen(&mut self, outlet: &mut Outlet) -> Result<(), LmsError> {
-        let mut piece = [0; 1 << 12];
-        while !outlet.stopped() {
-            match self.setup.next(transport::monotonic_ns())? {
-                Action::Send(command) => self.send(&command)?,
-                Action::Baud(baud) => self.switch(baud)?,
-                Action::Wait => {}
-            }
-            match self.port.read(&mut piece) {
-                Ok(count) => {
-                    let received = super::now();
-                    self.framer.push(piece.get(..count).unwrap_or_default());
-                    self.receive(outlet, received)?;
-                }
-                Err(error)
-                    if matches!(error.kind(), ErrorKind::TimedOut | ErrorKind::Interrupted) => {}
-                Err(error) => return Err(failed(self.name.display(), "read", error)),
-            }
-            if self.setup.format().is_some()
-                && self.last_data.elapsed().as_secs_f64() > self.silence_s
-            {
+    fn listen(&mut self, config: &Config, last_baud: Option<Baud>) -> Result<(), LmsError> {
+        let wanted = Wanted {
+            baud: config.baud,
+            width_deg: config.field.map(|deg| deg as u16),
+            resolution_raw_1e2_deg: config.resolution.map(|deg| (deg * 100.0) as u16),
+            reach: config.range,
+        };
+        self.baud = Some(find_baud(self, wanted.baud, last_baud)?);
+        self.format = Some(set_up(self, wanted)?);
+        while !self.outlet.stopped() {
+            self.step(|_| None::<()>)?;
+            if self.last_data.elapsed().as_secs_f64() > self.silence_s {
                 return Err(LmsError::Silent {
                     address: self.name.display().to_string(),
                     seconds: self.silence_s,
                 });
             }
-            outlet.tick()?;
         }
         Ok(())
     }
 
-    fn receive(
+    /// Publishes the scans that have arrived, up to the first answer that `pick` takes, whose result
+    /// it returns; if there is none, reads once.
+    fn step<R>(
         &mut self,
-        outlet: &mut Outlet,
-        received: crate::scan::Received,
-    ) -> Result<(), LmsError> {
+        mut pick: impl FnMut(&Answer<'_>) -> Option<R>,
+    ) -> Result<Option<R>, LmsError> {
         while let Some(next) = self.framer.next_frame() {
-            // Before the baud rate is known, anything received may be garbage.
-            let Some(baud) = self.setup.baud() else {
-                if let Ok(frame) = next
-                    && let Reply::Answer(answer, _) = frame.telegram
-                {
-                    self.setup.receive(&answer)?;
-                }
-                self.last_data = Instant::now();
-                continue;
+            let reply = match self.baud {
+                Some(_) => self.outlet.take(next)?,
+                // Before the baud rate is known, anything received may be garbage.
+                None => next.ok().map(|frame| frame.telegram),
             };
-            let Some(Reply::Answer(answer, status)) = outlet.take(next)? else {
+            let Some(Reply::Answer(answer, status)) = reply else {
                 continue;
             };
             self.last_data = Instant::now();
-            match (answer, self.setup.format()) {
-                (Answer::Started(_), _) => return Err(LmsError::Restarted),
-                (Answer::Scan(scan), Some(format)) => {
+            match (answer, self.baud, self.format) {
+                (Answer::Started(_), Some(_), _) => {
+                    return Err(LmsError::Other("the device was restarted".into()));
+                }
+                (Answer::Scan(scan), Some(baud), Some(format)) => {
                     // A byte has ten bits with start and stop; a scan has ten bytes and two per
                     // reading.
                     let bytes = 10 + 2 * scan.readings.len() as i64;
@@ -134,24 +120,54 @@ impl<'a> Line<'a> {
                         scan,
                         line_ns,
                     };
-                    outlet.publish_lms2xx(&whole, status, received)?;
+                    self.outlet.publish_lms2xx(&whole, status, self.received)?;
                 }
-                _ => self.setup.receive(&answer)?,
+                _ => {
+                    if let Some(found) = pick(&answer) {
+                        return Ok(Some(found));
+                    }
+                }
             }
         }
-        Ok(())
-    }
-
-    fn send(&mut self, command: &Command<'_>) -> Result<(), LmsError> {
-        self.command.clear();
-        command.frame(&mut self.command);
-        for byte in &self.command {
-            self.port
-                .write_all(std::slice::from_ref(byte))
-                .map_err(|error| failed(self.name.display(), "write", error))?;
-            std::thread::sleep(BYTE_GAP);
+        let mut piece = [0; 1 << 12];
+        match self.port.read(&mut piece) {
+            Ok(count) => {
+                self.received = super::now();
+                self.framer.push(piece.get(..count).unwrap_or_default());
+            }
+            Err(error) if matches!(error.kind(), ErrorKind::TimedOut | ErrorKind::Interrupted) => {}
+            Err(error) => return Err(failed(self.name.display(), "read", error)),
         }
-        Ok(())
+        self.outlet.tick()?;
+        Ok(None)
+    }
+}
+
+impl Device for Line<'_> {
+    fn ask<R>(
+        &mut self,
+        command: &Command<'static>,
+        patience: Duration,
+        mut pick: impl FnMut(&Answer<'_>) -> Option<R>,
+    ) -> Result<Option<R>, LmsError> {
+        let mut bytes = Vec::new();
+        command.frame(&mut bytes);
+        let mut found = None;
+        for _ in 0..TRIES {
+            let deadline = Instant::now() + patience;
+            if found.is_none() && !self.outlet.stopped() {
+                for byte in &bytes {
+                    self.port
+                        .write_all(std::slice::from_ref(byte))
+                        .map_err(|error| failed(self.name.display(), "write", error))?;
+                    std::thread::sleep(BYTE_GAP);
+                }
+            }
+            while found.is_none() && Instant::now() < deadline && !self.outlet.stopped() {
+                found = self.step(&mut pick)?;
+            }
+        }
+        Ok(found)
     }
 
     /// Sets the baud rate and drops bytes received at the old one.

@@ -36,13 +36,14 @@ fn ident(name: &str) -> Answer<'_> {
     })
 }
 
-/// Accepts the node's connection; sends `early` at once, the name on request, and returns once the
-/// node subscribes to scans. All other commands are rejected.
+/// Accepts the node's connection; sends `early` at once, the name on the second request, and returns
+/// once the node subscribes to scans. All other commands are rejected.
 fn accept(listener: &TcpListener, name: Option<&str>, early: &[u8]) -> TcpStream {
     let (mut stream, _) = listener.accept().unwrap();
     stream.write_all(early).unwrap();
     let mut framer = Framer::new(Encoding::Binary);
     let mut piece = [0; 1000];
+    let mut requests = 0;
     loop {
         let count = stream.read(&mut piece).unwrap();
         assert!(count > 0, "the node has gone");
@@ -52,7 +53,13 @@ fn accept(listener: &TcpListener, name: Option<&str>, early: &[u8]) -> TcpStream
                 panic!("no command");
             };
             let answer = match (command, name) {
-                (Command::Read(Variable::DeviceIdent), Some(name)) => ident(name),
+                (Command::Read(Variable::DeviceIdent), Some(name)) => {
+                    requests += 1;
+                    if requests == 1 {
+                        continue;
+                    }
+                    ident(name)
+                }
                 (Command::SubscribeScans(true), _) => Answer::ScansSubscribed(true),
                 _ => Answer::Fault(Fault::UNKNOWN_VARIABLE),
             };
