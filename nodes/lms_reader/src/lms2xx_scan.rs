@@ -36,10 +36,21 @@ impl WholeScan<'_> {
         settings: &ScanSettings,
         received: Received,
     ) -> Result<ScanHeader, LmsError> {
-        let first = self.first()?;
-        let step_deg = f64::from(self.format.resolution_raw_1e2_deg) * 0.01;
-        let start_deg = -0.5 * f64::from(self.format.width_deg) + f64::from(first - 1) * step_deg;
-        let turns = 100.0 / f64::from(self.format.resolution_raw_1e2_deg);
+        let Format {
+            width_deg,
+            resolution_raw_1e2_deg: step,
+            ..
+        } = self.format;
+        let expected = usize::from(width_deg) * 100 / usize::from(step.max(1)) + 1;
+        if self.len() != expected {
+            return Err(LmsError::Other(format!(
+                "the device sent {} readings, {width_deg}° at {step}/100° are {expected}",
+                self.len()
+            )));
+        }
+        let step_deg = f64::from(step) * 0.01;
+        let start_deg = -0.5 * f64::from(width_deg);
+        let turns = 100.0 / f64::from(step);
         let scan_time_s = TURN_S * turns;
         let before_ns = self.line_ns + (scan_time_s * 1e9) as i64;
         let beams = Beams {
@@ -50,29 +61,6 @@ impl WholeScan<'_> {
         };
         let measured_ns = received.realtime_ns - before_ns;
         Ok(settings.header(&beams, measured_ns, received.monotonic_ns, USUAL_REACH_M))
-    }
-
-    /// Returns the number of the first reading after checking how many there are.
-    fn first(&self) -> Result<u16, LmsError> {
-        let Format {
-            width_deg,
-            resolution_raw_1e2_deg: step,
-            ..
-        } = self.format;
-        let all = usize::from(width_deg) * 100 / usize::from(step.max(1)) + 1;
-        let (first, last) = match self.scan.sub_range {
-            Some((first, last)) => (first, usize::from(last)),
-            None => (1, all),
-        };
-        let expected = (last + 1).saturating_sub(usize::from(first));
-        if first >= 1 && last <= all && expected == self.len() && expected > 0 {
-            return Ok(first);
-        }
-        Err(LmsError::Other(format!(
-            "the device sent {} readings, {expected} are those from {first} to {last} of \
-             {width_deg}° at {step}/100°",
-            self.len()
-        )))
     }
 
     /// Writes the distances in metres, infinity for no return; `ranges` has one element per
@@ -91,7 +79,6 @@ mod tests {
     use sick::lms2xx::{RangeMode, Unit};
 
     use super::*;
-    use crate::scan::recordable;
     use crate::scan::tests::{RECEIVED, settings};
 
     fn scan(readings: &[u16], width_deg: u16, resolution_raw_1e2_deg: u16) -> WholeScan<'_> {
@@ -141,18 +128,14 @@ mod tests {
     }
 
     #[test]
-    fn sub_ranges_begin_where_they_say_and_others_are_refused() {
-        let readings = [0; 91];
-        let header = |sub_range| {
-            let mut part = scan(&readings, 180, 100);
-            part.scan.sub_range = sub_range;
-            part.header(&settings(), RECEIVED)
-        };
-        let sound = header(Some((46, 136))).unwrap();
-        assert_eq!(sound.angle_min, recordable((-45f64).to_radians()));
-        for sub_range in [None, Some((0, 90)), Some((92, 182)), Some((5, 4))] {
-            let error = header(sub_range).unwrap_err().to_string();
-            assert!(error.contains("the device sent 91 readings"), "{error}");
-        }
+    fn another_number_of_readings_is_refused() {
+        let error = scan(&[0; 91], 180, 100)
+            .header(&settings(), RECEIVED)
+            .unwrap_err()
+            .to_string();
+        assert!(
+            error.contains("91 readings, 180° at 100/100° are 181"),
+            "{error}"
+        );
     }
 }

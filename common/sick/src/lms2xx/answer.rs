@@ -26,7 +26,7 @@ pub enum Answer<'a> {
     /// `A0`: u8, 0 if the mode was changed, 1 if the password was wrong or the mode not possible, 2
     /// if the device has an error.
     ModeSet(u8),
-    /// `B0` or `B7`: measured values.
+    /// `B0`: measured values.
     Scan(Scan<'a>),
     /// `B1`: status.
     Status(DeviceStatus),
@@ -87,12 +87,11 @@ impl<'a> Reply<'a> {
 impl<'a> Answer<'a> {
     fn read(body: &'a [u8]) -> Result<Self, SickError> {
         let mut fields = Cursor::little_endian(body);
-        let code = fields.u8("code")?;
-        let answer = match code {
+        let answer = match fields.u8("code")? {
             0x90 => return Ok(Answer::Started(fields.rest())),
             0xba => return Ok(Answer::Type(fields.rest())),
             0xa0 => Answer::ModeSet(fields.u8("result")?),
-            0xb0 | 0xb7 => Answer::Scan(Scan::read(&mut fields, code == 0xb7)?),
+            0xb0 => Answer::Scan(Scan::read(&mut fields)?),
             0xb1 => Answer::Status(DeviceStatus::read(&mut fields)?),
             0xbb => Answer::VariantSet {
                 done: done(&mut fields)?,
@@ -121,7 +120,7 @@ impl<'a> Answer<'a> {
             }
             Answer::ModeSet(result) => out.extend_from_slice(&[0xa0, *result]),
             Answer::Scan(scan) => {
-                out.push(if scan.sub_range.is_some() { 0xb7 } else { 0xb0 });
+                out.push(0xb0);
                 scan.write(out);
             }
             Answer::Status(status) => {
@@ -187,7 +186,6 @@ mod tests {
             Answer::Scan(Scan {
                 unit: Unit::Centimetre,
                 part: Some(3),
-                sub_range: Some((2, 5)),
                 counters: Some((255, 0)),
                 ..scan(&readings)
             }),

@@ -1,4 +1,4 @@
-//! Measured values: whole scans, partial ones and sub-ranges.
+//! Measured values: whole scans and partial ones.
 
 use super::range_mode::Unit;
 use crate::SickError;
@@ -10,12 +10,11 @@ const COUNT: u16 = 0x03ff;
 /// Flag of a partial scan: bit 13 of the head.
 const IS_PARTIAL: u16 = 1 << 13;
 
-/// Measured values: `B0`, or `B7` for a sub-range.
+/// Measured values: `B0`.
 ///
 /// | bytes | field | |
 /// |---|---|---|
-/// | 1 | code | `B0` or `B7` |
-/// | 2 + 2 | first and last value, from 1 | u16, `B7` only |
+/// | 1 | code | `B0` |
 /// | 2 | head | bits 0–9 count, 11–12 partial scan, 13 whether it is one, 14–15 unit |
 /// | 2 · count | readings | u16 each, right to left |
 /// | 2 | counters of scan and telegram | u8 each, if the device is set to send them |
@@ -24,8 +23,6 @@ pub struct Scan<'a> {
     pub unit: Unit,
     /// Start of a partial scan, which has one value per degree: 0 to 3 quarters of a degree.
     pub part: Option<u8>,
-    /// First and last value requested, from 1.
-    pub sub_range: Option<(u16, u16)>,
     /// Readings, right to left; at most 401 fit into a telegram.
     pub readings: Values<'a>,
     /// Counters of scans and of telegrams, if the device sends them.
@@ -37,17 +34,12 @@ impl<'a> Scan<'a> {
         Scan {
             unit,
             part: None,
-            sub_range: None,
             readings: readings.into(),
             counters: None,
         }
     }
 
-    pub(super) fn read(fields: &mut Cursor<'a>, has_sub_range: bool) -> Result<Self, SickError> {
-        let sub_range = match has_sub_range {
-            true => Some((fields.u16("first value")?, fields.u16("last value")?)),
-            false => None,
-        };
+    pub(super) fn read(fields: &mut Cursor<'a>) -> Result<Self, SickError> {
         let offset = fields.offset();
         let head = fields.u16("count and unit")?;
         let unit = (head >> 14) as u8;
@@ -64,7 +56,6 @@ impl<'a> Scan<'a> {
         Ok(Scan {
             unit,
             part: (head & IS_PARTIAL != 0).then_some((head >> 11 & 3) as u8),
-            sub_range,
             readings: Values::little_endian(readings),
             counters,
         })
@@ -72,10 +63,6 @@ impl<'a> Scan<'a> {
 
     pub(super) fn write(&self, out: &mut Vec<u8>) {
         let mut u16 = |value: u16| out.extend_from_slice(&value.to_le_bytes());
-        if let Some((first, last)) = self.sub_range {
-            u16(first);
-            u16(last);
-        }
         let part = self
             .part
             .map_or(0, |quarter| IS_PARTIAL | u16::from(quarter & 3) << 11);

@@ -37,7 +37,7 @@ impl Protocol for FromDevice {
 
     fn stands_alone(&self, content: &[u8]) -> bool {
         // Shorter ones may occur by chance: the checksum has only 16 bits.
-        matches!(content, [0xb0 | 0xb7, ..]) && content.len() >= SHORTEST_SCAN
+        matches!(content, [0xb0, ..]) && content.len() >= SHORTEST_SCAN
     }
 
     fn read<'a>(&self, content: &'a [u8]) -> Result<Reply<'a>, SickError> {
