@@ -1,13 +1,11 @@
 //! Draws a scan in Braille patterns of two by four dots, with the laser in the middle. Pure.
 
-use std::f64::consts::{FRAC_PI_2, TAU};
-
-/// Dots of a character: columns and rows.
-const DOTS: (usize, usize) = (2, 4);
-/// The bit of each dot, by row and column.
-const BITS: [[u8; 2]; 4] = [[0x01, 0x08], [0x02, 0x10], [0x04, 0x20], [0x40, 0x80]];
-/// Rows per column: a character is about twice as high as wide, so dots are square.
-const ROWS_PER_COLUMN: f64 = 0.5;
+use ratatui::buffer::{Buffer, Cell};
+use ratatui::layout::Rect;
+use ratatui::style::Color;
+use ratatui::symbols::Marker;
+use ratatui::widgets::Widget;
+use ratatui::widgets::canvas::{Canvas, Circle, Points};
 
 /// A scan: bearings in radians counter-clockwise from ahead, and distances in metres.
 #[derive(Default)]
@@ -18,40 +16,31 @@ pub(super) struct Seen {
 
 impl Seen {
     pub(super) fn draw(&self, columns: usize) -> String {
-        let rows = ((columns as f64 * ROWS_PER_COLUMN) as usize).max(2);
+        // A character is about twice as high as wide, so dots are square.
+        let area = Rect::new(0, 0, columns as u16, (columns / 2).max(2) as u16);
         let reach_m = self.reach();
-        let mut canvas = vec![0u8; columns * rows];
-        let (width, height) = (columns * DOTS.0, rows * DOTS.1);
-        let dots_per_m = (width.min(height) as f64 / 2.0 - 1.0) / reach_m;
-        let mut set = |x_m: f64, y_m: f64| {
-            let x = width as f64 / 2.0 + x_m * dots_per_m;
-            let y = height as f64 / 2.0 - y_m * dots_per_m;
-            if x < 0.0 || y < 0.0 {
-                return;
-            }
-            let (x, y) = (x as usize, y as usize);
-            let at = y / DOTS.1 * columns + x / DOTS.0;
-            if x < width
-                && let Some(character) = canvas.get_mut(at)
-            {
-                *character |= BITS[y % DOTS.1][x % DOTS.0];
-            }
-        };
-        for (bearing, range) in &self.points {
-            let angle = FRAC_PI_2 + bearing;
-            set(range * angle.cos(), range * angle.sin());
-        }
-        // The laser is a ring one dot wide.
-        for step in 0..16 {
-            let angle = TAU * f64::from(step) / 16.0;
-            set(
-                1.5 / dots_per_m * angle.cos(),
-                1.5 / dots_per_m * angle.sin(),
-            );
-        }
-        let rows = canvas.chunks(columns).map(|row| {
-            let row: String = row.iter().map(|&dots| braille(dots)).collect();
-            row.trim_end_matches(braille(0)).to_owned() + "\n"
+        let high_m = reach_m * 2.0 * f64::from(area.height) / f64::from(area.width);
+        let points = self.points.iter();
+        let points: Vec<(f64, f64)> = points
+            .map(|(bearing, range)| (-range * bearing.sin(), range * bearing.cos()))
+            .collect();
+        let color = Color::Reset;
+        let canvas = Canvas::default()
+            .marker(Marker::Braille)
+            .x_bounds([-reach_m, reach_m])
+            .y_bounds([-high_m, high_m])
+            .paint(|context| {
+                let coords = &points;
+                context.draw(&Points { coords, color });
+                // The laser is a ring with a radius of one dot and a half.
+                let radius = 1.5 * reach_m / f64::from(area.width);
+                context.draw(&Circle::new(0.0, 0.0, radius, color));
+            });
+        let mut buffer = Buffer::empty(area);
+        canvas.render(area, &mut buffer);
+        let rows = buffer.content.chunks(columns).map(|row| {
+            let row: String = row.iter().map(Cell::symbol).collect();
+            row.trim_end().to_owned() + "\n"
         });
         let text: String = rows.collect();
         let text = text.trim_matches('\n');
@@ -70,12 +59,10 @@ impl Seen {
     }
 }
 
-fn braille(dots: u8) -> char {
-    char::from_u32(0x2800 + u32::from(dots)).unwrap_or(' ')
-}
-
 #[cfg(test)]
 mod tests {
+    use std::f64::consts::FRAC_PI_2;
+
     use super::*;
 
     fn seen(points: Vec<(f64, f64)>) -> Seen {
@@ -92,7 +79,7 @@ mod tests {
         let picture = seen(points).draw(20);
         let lines: Vec<&str> = picture.lines().collect();
         // The wall is one row of characters above the laser; the area behind is empty.
-        let is_long = |line: &&str| line.trim_matches(braille(0)).chars().count() > 8;
+        let is_long = |line: &&str| line.trim_matches(' ').chars().count() > 8;
         assert!(is_long(&lines[0]), "{picture}");
         let rows = lines[..lines.len() - 1].iter();
         assert_eq!(rows.filter(|line| is_long(line)).count(), 1);
@@ -103,10 +90,11 @@ mod tests {
     fn left_is_left() {
         let points = vec![(FRAC_PI_2, 1.0)];
         let picture = seen(points).draw(20);
-        let middle = picture.lines().next().unwrap();
-        let marks = middle.chars().enumerate().filter(|(_, c)| *c != braille(0));
-        let marks: Vec<usize> = marks.map(|(i, _)| i).collect();
-        assert!(marks[0] < 3 && *marks.last().unwrap() <= 11, "{picture}");
+        let (dots, _) = picture.split_once("\nahead").unwrap();
+        let marks = dots.lines().flat_map(|line| line.chars().enumerate());
+        let marks = marks.filter(|(_, c)| *c != ' ').map(|(column, _)| column);
+        let (least, most) = (marks.clone().min().unwrap(), marks.max().unwrap());
+        assert!(least < 3 && most <= 11, "{picture}");
     }
 
     #[test]
