@@ -11,12 +11,6 @@ use crate::SickError;
 pub trait Protocol {
     type Telegram<'a>;
 
-    /// Processes each new piece of the stream, once.
-    fn extend(&mut self, _piece: &[u8]) {}
-
-    /// Drops bytes at the front of the buffer.
-    fn release(&mut self, _count: usize) {}
-
     /// Classifies the bytes from the first pending one on.
     fn judge(&self, pending: Pending<'_>) -> Judgement;
 
@@ -36,8 +30,6 @@ pub trait Protocol {
 pub struct Pending<'a> {
     /// All received bytes from here on.
     pub bytes: &'a [u8],
-    /// Index of the first one in the buffer.
-    pub at: usize,
     /// Offset of the first one in the stream.
     pub offset: u64,
     /// True if the previous byte ended a telegram.
@@ -100,7 +92,6 @@ impl<P: Protocol> Framer<P> {
     pub fn push(&mut self, piece: &[u8]) {
         self.release();
         self.bytes.extend_from_slice(piece);
-        self.protocol.extend(piece);
     }
 
     /// Marks the end of the stream: incomplete telegrams are now errors.
@@ -167,7 +158,6 @@ impl<P: Protocol> Framer<P> {
         }
         let judgement = self.protocol.judge(Pending {
             bytes,
-            at,
             offset,
             in_step: self.skipped == 0 && at == self.at,
         });
@@ -212,7 +202,6 @@ impl<P: Protocol> Framer<P> {
     fn release(&mut self) {
         if self.at > self.bytes.len() / 2 {
             self.bytes.drain(..self.at);
-            self.protocol.release(self.at);
             self.released += self.at as u64;
             self.looked = self.looked.saturating_sub(self.at);
             self.at = 0;

@@ -83,9 +83,11 @@ impl ColaDevice {
         let ends = [sweep.start_raw, sweep.stop_raw()].map(|raw| model.turn(raw));
         let full = ScanConfig {
             frequency_raw_1e2_hz: (100.0 / sweep.scan_time_s).round() as u32,
-            resolution_raw_1e4_deg: sweep.step_raw.unsigned_abs(),
-            start_angle_raw_1e4_deg: ends[0].min(ends[1]),
-            stop_angle_raw_1e4_deg: ends[0].max(ends[1]),
+            range: OutputRange {
+                resolution_raw_1e4_deg: sweep.step_raw.unsigned_abs(),
+                start_angle_raw_1e4_deg: ends[0].min(ends[1]),
+                stop_angle_raw_1e4_deg: ends[0].max(ends[1]),
+            },
         };
         let ranges = sweep.scans.iter().flatten();
         let is_far = ranges
@@ -97,7 +99,7 @@ impl ColaDevice {
             encoding,
             full,
             scan: full,
-            range: full.range(),
+            range: full.range,
             data: ScanDataConfig {
                 time: true,
                 ..ScanDataConfig::DISTANCES
@@ -176,11 +178,11 @@ impl ColaDevice {
 
     fn can_send(&self, range: &OutputRange) -> bool {
         let (start, stop) = (range.start_angle_raw_1e4_deg, range.stop_angle_raw_1e4_deg);
-        let full = self.full.start_angle_raw_1e4_deg..=self.full.stop_angle_raw_1e4_deg;
-        let step = self.full.resolution_raw_1e4_deg.cast_signed();
-        let is_beam = |angle: i32| {
-            full.contains(&angle) && (angle - self.full.start_angle_raw_1e4_deg) % step == 0
-        };
+        let all = self.full.range;
+        let full = all.start_angle_raw_1e4_deg..=all.stop_angle_raw_1e4_deg;
+        let step = all.resolution_raw_1e4_deg.cast_signed();
+        let is_beam =
+            |angle: i32| full.contains(&angle) && (angle - all.start_angle_raw_1e4_deg) % step == 0;
         is_beam(start) && is_beam(stop) && start < stop
     }
 
@@ -211,12 +213,15 @@ impl ColaDevice {
 
     /// Applies a scan configuration; returns 0, or the status code of what is wrong.
     fn set_scan_config(&mut self, config: &ScanConfig) -> u8 {
-        let resolution = config.resolution_raw_1e4_deg;
+        let resolution = config.range.resolution_raw_1e4_deg;
         let can_resolve = resolution <= u32::from(u16::MAX)
-            && resolution.checked_rem(self.full.resolution_raw_1e4_deg) == Some(0)
+            && resolution.checked_rem(self.full.range.resolution_raw_1e4_deg) == Some(0)
             && resolution > 0;
-        let has_field = config.start_angle_raw_1e4_deg == self.full.start_angle_raw_1e4_deg
-            && config.stop_angle_raw_1e4_deg == self.full.stop_angle_raw_1e4_deg;
+        let has_field = config.range
+            == OutputRange {
+                resolution_raw_1e4_deg: resolution,
+                ..self.full.range
+            };
         match (can_resolve, has_field) {
             _ if config.frequency_raw_1e2_hz != self.full.frequency_raw_1e2_hz => 1,
             (false, true) => 2,

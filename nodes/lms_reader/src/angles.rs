@@ -3,7 +3,9 @@
 //!
 //! Pure except for the log, which reports once what the decision is based on.
 
-use sick::cola::{AngleConvention, ConventionError, DeviceAngles, Field};
+use sick::cola::{AngleConvention, DeviceAngles, Field};
+
+use crate::LmsError;
 
 #[derive(Debug, Default)]
 pub(crate) struct Angles {
@@ -37,36 +39,18 @@ impl Angles {
 
     /// Returns the angle convention for a scan over `field`, and the longest range of the device,
     /// metres.
-    pub(crate) fn of(&mut self, field: Field) -> Result<(AngleConvention, f32), ConventionError> {
+    pub(crate) fn of(&mut self, field: Field) -> Result<(AngleConvention, f32), LmsError> {
         let angles = self.stated.as_ref().unwrap_or(&self.read);
-        let convention = angles.convention(field)?;
+        let convention = angles.convention(field).map_err(LmsError::Other)?;
         if self.logged != Some(convention) {
             self.logged = Some(convention);
-            log(angles, convention, self.stated.is_some());
+            tracing::info!(
+                stated = self.stated.is_some(),
+                "{convention} ({})",
+                angles.reason()
+            );
         }
         Ok((convention, angles.reach_m()))
-    }
-}
-
-fn log(angles: &DeviceAngles, convention: AngleConvention, stated: bool) {
-    match angles {
-        DeviceAngles::Known(row) => {
-            tracing::info!(
-                device = row.name,
-                stated,
-                source = row.source,
-                "{convention}"
-            );
-        }
-        DeviceAngles::Stated(_) => tracing::info!("{convention}, as stated"),
-        DeviceAngles::Unknown(name) => {
-            tracing::info!(%name, "{convention}: the device is not in the table, and its field is centred there");
-        }
-        DeviceAngles::Unnamed => {
-            tracing::info!(
-                "{convention}: the device did not say its name, and its field is centred there"
-            );
-        }
     }
 }
 
@@ -82,7 +66,7 @@ mod tests {
     #[test]
     fn a_statement_counts_more_than_the_name_and_that_more_than_the_field() {
         let mut angles = Angles::default();
-        assert_eq!(angles.of(USUAL), Ok((AngleConvention::USUAL, 80.0)));
+        assert_eq!(angles.of(USUAL).unwrap(), (AngleConvention::USUAL, 80.0));
         angles.on_name(b"NAV310");
         let (nav, reach_m) = angles.of(USUAL).unwrap();
         assert_eq!(
@@ -90,7 +74,7 @@ mod tests {
             (180.0, true, 250.0)
         );
         angles.forget_name();
-        assert_eq!(angles.of(USUAL), Ok((AngleConvention::USUAL, 80.0)));
+        assert_eq!(angles.of(USUAL).unwrap(), (AngleConvention::USUAL, 80.0));
         let mut angles = Angles::new(Some(DeviceAngles::of_name(b"TiM240")));
         angles.on_name(b"NAV310");
         assert_eq!(angles.of(USUAL).unwrap().0.ahead_deg, 0.0);

@@ -24,7 +24,7 @@ struct Arrival {
     offset_us: f64,
 }
 
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub(crate) struct DeviceClock {
     /// Newest device count, the same without wraps, and its time of reception.
     newest: Option<(u32, i64, i64)>,
@@ -32,16 +32,6 @@ pub(crate) struct DeviceClock {
     least: VecDeque<Arrival>,
     /// Lower convex hull of `least`; the buffer is reused.
     hull: Vec<Arrival>,
-}
-
-impl Default for DeviceClock {
-    fn default() -> Self {
-        DeviceClock {
-            newest: None,
-            least: VecDeque::with_capacity(SLOTS + 1),
-            hull: Vec::with_capacity(SLOTS + 1),
-        }
-    }
 }
 
 impl DeviceClock {

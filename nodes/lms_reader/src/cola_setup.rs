@@ -179,10 +179,8 @@ fn add_time(device: &mut impl Device, before: ScanDataConfig) -> Result<(), LmsE
 }
 
 fn set_resolution(device: &mut impl Device, resolution: u32) -> Result<ScanConfig, LmsError> {
-    let wanted = ScanConfig {
-        resolution_raw_1e4_deg: resolution,
-        ..scan_config(device)?
-    };
+    let mut wanted = scan_config(device)?;
+    wanted.range.resolution_raw_1e4_deg = resolution;
     let set = Command::Call(Method::SetScanConfig(wanted));
     let status = ask(device, set, SLOW, |answer| match answer {
         Answer::ScanConfigSet { status, .. } => Some(*status),
@@ -192,7 +190,7 @@ fn set_resolution(device: &mut impl Device, resolution: u32) -> Result<ScanConfi
     let found = scan_config(device)?;
     same(
         "keep the resolution",
-        &found.resolution_raw_1e4_deg,
+        &found.range.resolution_raw_1e4_deg,
         &resolution,
     )?;
     Ok(found)
@@ -206,10 +204,11 @@ fn ahead_raw(
     scan: Option<ScanConfig>,
 ) -> Result<i32, LmsError> {
     let convention = match (angles.certain(), scan) {
-        (Some(convention), _) => convention,
-        (None, Some(scan)) => angles.convention(Field::measured(&scan))?,
-        (None, None) => angles.convention(Field::measured(&scan_config(device)?))?,
+        (Some(convention), _) => Ok(convention),
+        (None, Some(scan)) => angles.convention(Field::measured(&scan.range)),
+        (None, None) => angles.convention(Field::measured(&scan_config(device)?.range)),
     };
+    let convention = convention.map_err(LmsError::Other)?;
     Ok((convention.ahead_deg * 1e4).round() as i32)
 }
 

@@ -5,8 +5,6 @@ pub enum LmsError {
     /// The device sent bytes that are no telegram, or a damaged one.
     #[error(transparent)]
     Telegram(#[from] sick::SickError),
-    #[error(transparent)]
-    Convention(#[from] sick::cola::ConventionError),
     #[error("{address}: cannot {what}")]
     Io {
         address: String,

@@ -1,6 +1,6 @@
 //! Conversion of a device's own angles to bearings from straight ahead.
 
-use super::{Channel, ScanConfig};
+use super::{Channel, OutputRange};
 
 /// Zero point and direction of a device's angle scale.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -69,10 +69,10 @@ impl Field {
         }
     }
 
-    pub fn measured(config: &ScanConfig) -> Self {
+    pub fn measured(range: &OutputRange) -> Self {
         Field {
-            first_deg: f64::from(config.start_angle_raw_1e4_deg) * 1e-4,
-            last_deg: f64::from(config.stop_angle_raw_1e4_deg) * 1e-4,
+            first_deg: f64::from(range.start_angle_raw_1e4_deg) * 1e-4,
+            last_deg: f64::from(range.stop_angle_raw_1e4_deg) * 1e-4,
         }
     }
 

@@ -80,14 +80,6 @@ mod tests {
     }
 
     #[test]
-    fn a_telegram_without_its_end_costs_itself_alone() {
-        let seen = read(&[b"\x02sAN on\x02sAN two\x03\x02sAN"]);
-        assert!(seen[0].contains("cut off by another one after 7 bytes"));
-        assert_eq!(seen[1], "sAN two@7");
-        assert!(seen[2].contains("ends 4 bytes into"), "{seen:?}");
-    }
-
-    #[test]
     fn binary_telegrams_are_refused() {
         let seen = read(&[b"\x02\x02\x02\x02\0\0\0\x07sAN one\x42"]);
         assert!(

@@ -32,22 +32,43 @@ impl DeviceAngles {
         }
     }
 
-    /// Returns the angle convention for a scan over `field`.
-    pub fn convention(&self, field: Field) -> Result<AngleConvention, ConventionError> {
+    /// Returns the angle convention for a scan over `field`, or the reason why it is unknown.
+    pub fn convention(&self, field: Field) -> Result<AngleConvention, String> {
+        if let DeviceAngles::Known(row) = self
+            && row.convention.is_none()
+        {
+            return Err(format!(
+                "which way a {} looks is not known: the sources differ ({}); no scan is published \
+                 until lms_reader is given {OPTIONS}",
+                row.name, row.source
+            ));
+        }
         let usual = AngleConvention::USUAL;
         let is_centred = (field.middle_deg() - usual.ahead_deg).abs() <= TOLERANCE_DEG;
+        let certain = self.certain().or(is_centred.then_some(usual));
+        certain.ok_or_else(|| {
+            let name = self.name_in_words();
+            format!(
+                "which way the laser looks is not known: {name}, and its field, {field}, is not \
+                 centred on 90°, which is ahead on most SICK lasers; no scan is published until \
+                 lms_reader is given --device NAME (such as TiM240, NAV310 or LMS111), or {OPTIONS}"
+            )
+        })
+    }
+
+    /// Returns the reason for a convention that was found, in words.
+    pub fn reason(&self) -> String {
         match self {
-            DeviceAngles::Stated(convention) => Ok(*convention),
-            DeviceAngles::Known(row) => row.convention.ok_or(ConventionError::Disputed {
-                row: row.name,
-                sources: row.source,
-            }),
-            DeviceAngles::Unnamed | DeviceAngles::Unknown(_) if is_centred => Ok(usual),
-            DeviceAngles::Unnamed => Err(ConventionError::Unnamed { field }),
-            DeviceAngles::Unknown(name) => Err(ConventionError::Unknown {
-                name: name.clone(),
-                field,
-            }),
+            DeviceAngles::Stated(_) => "as stated".to_owned(),
+            DeviceAngles::Known(row) => format!("as a {}: {}", row.name, row.source),
+            _ => format!("{}, and its field is centred there", self.name_in_words()),
+        }
+    }
+
+    fn name_in_words(&self) -> String {
+        match self {
+            DeviceAngles::Unknown(name) => format!("{name} is not in the table"),
+            _ => "its name was not read".to_owned(),
         }
     }
 
@@ -67,41 +88,6 @@ impl DeviceAngles {
             _ => USUAL_REACH_M,
         }
     }
-}
-
-/// Reason why the convention of a device is unknown.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
-pub enum ConventionError {
-    #[error(
-        "which way the laser looks is not known: its name was not read, and its field, {field}, \
-         is not centred on 90°, which is ahead on most SICK lasers; {}",
-        remedy()
-    )]
-    Unnamed { field: Field },
-    #[error(
-        "which way the laser looks is not known: {name} is not in the table, and its field, \
-         {field}, is not centred on 90°, which is ahead on most SICK lasers; {}",
-        remedy()
-    )]
-    Unknown { name: String, field: Field },
-    #[error(
-        "which way a {row} looks is not known: the sources differ ({sources}); no scan is \
-         published until lms_reader is given {options}",
-        options = OPTIONS
-    )]
-    Disputed {
-        row: &'static str,
-        /// The contradicting statements and where they are found.
-        sources: &'static str,
-    },
-}
-
-/// Returns the advice for a device that may be in the table.
-fn remedy() -> String {
-    format!(
-        "no scan is published until lms_reader is given --device NAME (such as TiM240, NAV310 or \
-         LMS111), or {OPTIONS}"
-    )
 }
 
 const OPTIONS: &str = "--zero-deg DEGREES, the device's own angle that points ahead, with \
@@ -139,8 +125,7 @@ mod tests {
             }
             for (first_deg, last_deg) in [(-120.0, 120.0), (0.0, 359.75), (0.0, 90.0), (0.0, 177.9)]
             {
-                let error = angles.convention(field(first_deg, last_deg)).unwrap_err();
-                let text = error.to_string();
+                let text = angles.convention(field(first_deg, last_deg)).unwrap_err();
                 for part in ["--device NAME", "TiM240", "--zero-deg", "--clockwise"] {
                     assert!(text.contains(part), "{text}");
                 }
@@ -151,7 +136,7 @@ mod tests {
             }
         }
         let unknown = DeviceAngles::of_name(b"XY-7\xff");
-        let text = unknown.convention(field(0.0, 1.0)).unwrap_err().to_string();
+        let text = unknown.convention(field(0.0, 1.0)).unwrap_err();
         assert!(text.contains(r"XY-7\xff is not in the table"), "{text}");
     }
 
@@ -159,8 +144,8 @@ mod tests {
     fn where_sources_differ_it_must_be_stated() {
         let nav = DeviceAngles::of_name(b"NAV245");
         let error = nav.convention(field(-45.0, 225.0)).unwrap_err();
-        assert!(error.to_string().contains("--zero-deg"), "{error}");
-        assert!(!error.to_string().contains("--device"), "{error}");
+        assert!(error.contains("--zero-deg"), "{error}");
+        assert!(!error.contains("--device"), "{error}");
         assert_eq!(nav.certain(), None);
     }
 }

@@ -13,10 +13,8 @@ use crate::cursor::Cursor;
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct ScanConfig {
     pub frequency_raw_1e2_hz: u32,
-    pub resolution_raw_1e4_deg: u32,
-    /// Angle of the first beam, in the device's convention (90° is ahead).
-    pub start_angle_raw_1e4_deg: i32,
-    pub stop_angle_raw_1e4_deg: i32,
+    /// Range of angles that is measured.
+    pub range: OutputRange,
 }
 
 /// Part of a scan that is sent: `LMPoutputRange`. One sector.
@@ -65,33 +63,16 @@ pub struct ScanDataConfig {
 }
 
 impl ScanConfig {
-    /// Joins a mirror frequency with a range of angles.
-    pub fn new(frequency_raw_1e2_hz: u32, range: OutputRange) -> Self {
-        ScanConfig {
-            frequency_raw_1e2_hz,
-            resolution_raw_1e4_deg: range.resolution_raw_1e4_deg,
-            start_angle_raw_1e4_deg: range.start_angle_raw_1e4_deg,
-            stop_angle_raw_1e4_deg: range.stop_angle_raw_1e4_deg,
-        }
-    }
-
-    /// Returns the range of angles that is measured.
-    pub fn range(&self) -> OutputRange {
-        OutputRange {
-            resolution_raw_1e4_deg: self.resolution_raw_1e4_deg,
-            start_angle_raw_1e4_deg: self.start_angle_raw_1e4_deg,
-            stop_angle_raw_1e4_deg: self.stop_angle_raw_1e4_deg,
-        }
-    }
-
     pub(super) fn read(cursor: &mut Cursor<'_>) -> Result<Self, SickError> {
-        let frequency_raw_1e2_hz = cursor.u32("scan frequency")?;
-        Ok(Self::new(frequency_raw_1e2_hz, OutputRange::read(cursor)?))
+        Ok(ScanConfig {
+            frequency_raw_1e2_hz: cursor.u32("scan frequency")?,
+            range: OutputRange::read(cursor)?,
+        })
     }
 
     pub(super) fn write(&self, writer: &mut Writer<'_>) {
         writer.u32(self.frequency_raw_1e2_hz);
-        self.range().write(writer);
+        self.range.write(writer);
     }
 }
 

@@ -1,6 +1,5 @@
 //! Framing of CoLa telegrams in a stream, in either encoding.
 
-use super::cola_b::Parity;
 use super::{Encoding, LmdScanData, Telegram, cola_a, cola_b};
 use crate::SickError;
 use crate::framer::{self, Judgement, Pending, Protocol};
@@ -15,53 +14,31 @@ impl Encoding {
     }
 }
 
-/// CoLa as a protocol: the encoding and the state of its checksum.
-#[derive(Debug, Default)]
-pub struct Cola {
-    encoding: Encoding,
-    parity: Parity,
-}
-
 /// Framer for CoLa telegrams of either direction.
-pub type Framer = framer::Framer<Cola>;
+pub type Framer = framer::Framer<Encoding>;
 
 impl Framer {
     pub fn new(encoding: Encoding) -> Self {
-        Framer::of(Cola {
-            encoding,
-            parity: Parity::default(),
-        })
+        Framer::of(encoding)
     }
 }
 
-impl Protocol for Cola {
+impl Protocol for Encoding {
     type Telegram<'a> = Telegram<'a>;
 
-    fn extend(&mut self, piece: &[u8]) {
-        if self.encoding == Encoding::Binary {
-            self.parity.extend(piece);
-        }
-    }
-
-    fn release(&mut self, count: usize) {
-        if self.encoding == Encoding::Binary {
-            self.parity.release(count);
-        }
-    }
-
     fn judge(&self, pending: Pending<'_>) -> Judgement {
-        match self.encoding {
+        match self {
             Encoding::Text => cola_a::judge(pending),
-            Encoding::Binary => cola_b::judge(&self.parity, pending),
+            Encoding::Binary => cola_b::judge(pending),
         }
     }
 
     fn stands_alone(&self, content: &[u8]) -> bool {
-        self.encoding == Encoding::Binary && LmdScanData::is_in(content)
+        *self == Encoding::Binary && LmdScanData::is_in(content)
     }
 
     fn read<'a>(&self, content: &'a [u8]) -> Result<Telegram<'a>, SickError> {
-        Telegram::read(self.encoding, content)
+        Telegram::read(*self, content)
     }
 }
 

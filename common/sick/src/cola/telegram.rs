@@ -63,9 +63,7 @@ mod tests {
 
     const SCAN: ScanConfig = ScanConfig {
         frequency_raw_1e2_hz: 5000,
-        resolution_raw_1e4_deg: 5000,
-        start_angle_raw_1e4_deg: -450_000,
-        stop_angle_raw_1e4_deg: 2_250_000,
+        range: RANGE,
     };
 
     const DATA: ScanDataConfig = ScanDataConfig {

@@ -5,8 +5,8 @@ use std::time::Duration;
 
 use anyhow::Context;
 use sick::cola::{
-    AngleConvention, Answer, Channel, Command, DeviceAngles, Encoding, Field, Framer, Telegram,
-    Value, Variable, state_word,
+    AngleConvention, Answer, Channel, Command, DeviceAngles, Encoding, Field, Framer, OutputRange,
+    Telegram, Value, Variable, state_word,
 };
 
 use super::error::{not_reached, not_understood};
@@ -198,11 +198,7 @@ impl Device {
 fn in_which_way(angles: &DeviceAngles, field: Field) -> (String, AngleConvention, String) {
     match angles.convention(field) {
         Ok(convention) => {
-            let why = match angles {
-                DeviceAngles::Known(row) => format!("as a {}: {}", row.name, row.source),
-                _ => "its name is not in the table, its field is centred there".to_owned(),
-            };
-            let looks = format!("looks       {convention} ({why})");
+            let looks = format!("looks       {convention} ({})", angles.reason());
             (looks, convention, "ahead is up".to_owned())
         }
         Err(error) => {
@@ -229,7 +225,14 @@ fn seen(channel: &Channel<'_>, convention: AngleConvention, up: String) -> Seen 
 }
 
 fn in_words(value: &Value<'_>) -> String {
-    let deg = |raw: i32| f64::from(raw) * 1e-4;
+    let angles = |range: &OutputRange| {
+        format!(
+            "every {}°, from {}° to {}°",
+            f64::from(range.resolution_raw_1e4_deg) * 1e-4,
+            f64::from(range.start_angle_raw_1e4_deg) * 1e-4,
+            f64::from(range.stop_angle_raw_1e4_deg) * 1e-4
+        )
+    };
     match value {
         Value::DeviceIdent { name, version } => {
             let (name, version) = (name.escape_ascii(), version.escape_ascii());
@@ -237,18 +240,11 @@ fn in_words(value: &Value<'_>) -> String {
         }
         Value::DeviceState(state) => format!("state       {}", state_word(*state)),
         Value::ScanConfig(config) => format!(
-            "measures    {} Hz, every {}°, from {}° to {}°",
+            "measures    {} Hz, {}",
             f64::from(config.frequency_raw_1e2_hz) * 1e-2,
-            f64::from(config.resolution_raw_1e4_deg) * 1e-4,
-            deg(config.start_angle_raw_1e4_deg),
-            deg(config.stop_angle_raw_1e4_deg)
+            angles(&config.range)
         ),
-        Value::OutputRange(range) => format!(
-            "sends       every {}°, from {}° to {}°",
-            f64::from(range.resolution_raw_1e4_deg) * 1e-4,
-            deg(range.start_angle_raw_1e4_deg),
-            deg(range.stop_angle_raw_1e4_deg)
-        ),
+        Value::OutputRange(range) => format!("sends       {}", angles(range)),
         Value::ScanDataConfig(config) => format!(
             "contents    every scan in {}; remission {}, name {}, time {}",
             config.interval,

@@ -65,9 +65,9 @@ fn what_the_recording_does_not_have_is_refused() {
     type Change = fn(&mut ScanConfig);
     let changes: [(u8, Change); 4] = [
         (1, |config| config.frequency_raw_1e2_hz = 1),
-        (2, |config| config.resolution_raw_1e4_deg = 5000),
-        (4, |config| config.start_angle_raw_1e4_deg = 0),
-        (0, |config| config.resolution_raw_1e4_deg = 20_000),
+        (2, |config| config.range.resolution_raw_1e4_deg = 5000),
+        (4, |config| config.range.start_angle_raw_1e4_deg = 0),
+        (0, |config| config.range.resolution_raw_1e4_deg = 20_000),
     ];
     for (expected, change) in changes {
         let mut config = device.full;

@@ -4,9 +4,10 @@ use super::*;
 
 const SCAN: ScanConfig = ScanConfig {
     frequency_raw_1e2_hz: 2500,
-    resolution_raw_1e4_deg: 2500,
-    start_angle_raw_1e4_deg: -450_000,
-    stop_angle_raw_1e4_deg: 2_250_000,
+    range: OutputRange {
+        resolution_raw_1e4_deg: 2500,
+        ..RANGE
+    },
 };
 const RANGE: OutputRange = OutputRange {
     resolution_raw_1e4_deg: 5000,
@@ -214,8 +215,8 @@ fn a_field_is_laid_around_what_is_ahead_on_that_device() {
 #[test]
 fn an_unknown_device_that_looks_elsewhere_is_not_changed() {
     let mut device = device(b"XY7");
-    device.scan.start_angle_raw_1e4_deg = -1_200_000;
-    device.scan.stop_angle_raw_1e4_deg = 1_200_000;
+    device.scan.range.start_angle_raw_1e4_deg = -1_200_000;
+    device.scan.range.stop_angle_raw_1e4_deg = 1_200_000;
     device.refuses(FIELD, &["--zero-deg"]);
     assert!(!device.said.iter().any(|said| said.contains("Write")));
 }
