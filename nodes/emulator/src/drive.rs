@@ -51,7 +51,9 @@ impl Drive {
                 Err(error) => return Err(error.into()),
             }
         }
-        let mut sweep = sweep.ok_or_else(|| EmulatorError::Empty { path: path.into() })?;
+        let mut sweep = sweep.ok_or_else(|| {
+            EmulatorError::Recorded(format!("{}: there is no scan in it", path.display()))
+        })?;
         sweep.measure_time();
         Ok(Drive {
             sweep,

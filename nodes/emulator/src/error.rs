@@ -1,6 +1,6 @@
 //! Errors while playing a recording as a device.
 
-use std::path::PathBuf;
+use std::io;
 
 use recording::RecordingError;
 use ros_graph::replay::PlaybackError;
@@ -11,33 +11,27 @@ pub enum EmulatorError {
     Recording(#[from] RecordingError),
     #[error(transparent)]
     Playback(#[from] PlaybackError),
-    #[error("{}: there is no scan in it", path.display())]
-    Empty { path: PathBuf },
-    /// A scan of the recording cannot be sent by a device.
-    #[error("scan {scan} of the recording: {field} is {found}, allowed is {allowed}")]
-    Scan {
-        scan: usize,
-        field: &'static str,
-        found: f64,
-        allowed: String,
-    },
-    #[error("cannot listen on {address}")]
-    Listen {
-        address: String,
-        source: std::io::Error,
-    },
-    #[error("cannot wait for clients")]
-    Wait(#[source] std::io::Error),
-    #[error("pseudo-terminal: cannot {what}")]
-    Terminal {
-        what: &'static str,
-        source: std::io::Error,
-    },
-    #[error("{}: cannot make the link to the pseudo-terminal", path.display())]
-    Link {
-        path: PathBuf,
-        source: std::io::Error,
-    },
+    #[error("{what}")]
+    Io { what: String, source: io::Error },
+    /// The recording cannot be sent by a device.
+    #[error("{0}")]
+    Recorded(String),
     #[error(transparent)]
     Transport(#[from] transport::TransportError),
+}
+
+impl EmulatorError {
+    pub(crate) fn io(what: impl Into<String>, error: impl Into<io::Error>) -> Self {
+        EmulatorError::Io {
+            what: what.into(),
+            source: error.into(),
+        }
+    }
+
+    /// Returns the error for a value in a scan of the recording.
+    pub(crate) fn scan(scan: usize, field: &str, found: f64, allowed: &str) -> Self {
+        EmulatorError::Recorded(format!(
+            "scan {scan} of the recording: {field} is {found}, allowed is {allowed}"
+        ))
+    }
 }

@@ -46,12 +46,10 @@ impl Lms2xxDevice {
         };
         let variants: Vec<_> = VARIANTS.into_iter().filter(has).collect();
         let Some(&variant) = variants.first() else {
-            return Err(EmulatorError::Scan {
-                scan: 0,
-                field: "the angle from beam to beam",
-                found: f64::from(sweep.step_raw) * 1e-4,
-                allowed: "180° at 0.5° or 1°, or 100° at 0.25°, 0.5° or 1°".into(),
-            });
+            let step_deg = f64::from(sweep.step_raw) * 1e-4;
+            let allowed = "180° at 0.5° or 1°, or 100° at 0.25°, 0.5° or 1°";
+            let field = "the angle from beam to beam";
+            return Err(EmulatorError::scan(0, field, step_deg, allowed));
         };
         Ok(Lms2xxDevice {
             power_on_baud: baud,

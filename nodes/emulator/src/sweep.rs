@@ -37,24 +37,20 @@ impl Sweep {
         ranges: Vec<f32>,
     ) -> Result<Self, EmulatorError> {
         let raw = |radians: f64| (radians.to_degrees() * 1e4).round() as i32;
-        let refused = |field, found, allowed: &str| EmulatorError::Scan {
-            scan: 0,
-            field,
-            found,
-            allowed: allowed.to_owned(),
-        };
         let step_raw = raw(scan.angle_increment);
         if !(1..=65_535).contains(&step_raw) || ranges.is_empty() {
             let allowed = "0.0001° to 6.5535°, counter-clockwise";
             let found = f64::from(step_raw) * 1e-4;
-            return Err(refused("the angle from beam to beam", found, allowed));
+            let field = "the angle from beam to beam";
+            return Err(EmulatorError::scan(0, field, found, allowed));
         }
         let start_raw = raw(scan.angle_min);
         let sweep_raw = (ranges.len() as i64 - 1) * i64::from(step_raw);
         if !TURN.contains(&i64::from(start_raw)) || !TURN.contains(&sweep_raw) {
             let field = "the angle from the first beam to the last";
             let found = sweep_raw as f64 * 1e-4;
-            return Err(refused(field, found, "0° to 360°, from -360° on"));
+            let allowed = "0° to 360°, from -360° on";
+            return Err(EmulatorError::scan(0, field, found, allowed));
         }
         Ok(Sweep {
             start_raw: start_raw + AHEAD_RAW,
@@ -90,12 +86,8 @@ impl Sweep {
             ),
         ];
         if let Some((field, found, allowed)) = beams.into_iter().find(|(_, a, b)| a != b) {
-            return Err(EmulatorError::Scan {
-                scan: index,
-                field,
-                found,
-                allowed: format!("{allowed}, as in the first"),
-            });
+            let allowed = format!("{allowed}, as in the first");
+            return Err(EmulatorError::scan(index, field, found, &allowed));
         }
         self.times_ns.push(time_ns);
         self.stamps_us.extend(other.stamps_us);

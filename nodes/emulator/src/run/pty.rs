@@ -183,11 +183,8 @@ impl Terminal {
     }
 }
 
-fn failed(what: &'static str, error: impl Into<std::io::Error>) -> EmulatorError {
-    EmulatorError::Terminal {
-        what,
-        source: error.into(),
-    }
+fn failed(what: &str, error: impl Into<std::io::Error>) -> EmulatorError {
+    EmulatorError::io(format!("pseudo-terminal: cannot {what}"), error)
 }
 
 /// Symbolic link that is removed when dropped.
@@ -196,9 +193,9 @@ struct Link(PathBuf);
 impl Link {
     /// Creates the link; replaces an existing link, but no other kind of file.
     fn make(path: &Path, target: &Path) -> Result<Self, EmulatorError> {
-        let failed = |source| EmulatorError::Link {
-            path: path.into(),
-            source,
+        let failed = |error| {
+            let path = path.display();
+            EmulatorError::io(format!("{path}: cannot make the link to the pseudo-terminal"), error)
         };
         if path.is_symlink() {
             std::fs::remove_file(path).map_err(failed)?;

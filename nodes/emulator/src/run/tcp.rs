@@ -26,10 +26,7 @@ pub(super) fn run(
     encoding: Encoding,
     mut common: Common,
 ) -> Result<ExitCode, EmulatorError> {
-    let failed = |source| EmulatorError::Listen {
-        address: address.into(),
-        source,
-    };
+    let failed = |error| EmulatorError::io(format!("cannot listen on {address}"), error);
     let listener = TcpListener::bind(address).map_err(failed)?;
     listener.set_nonblocking(true).map_err(failed)?;
     let local = listener.local_addr().map_err(failed)?;
@@ -114,7 +111,7 @@ fn wait(
     let millis = timeout.as_micros().div_ceil(1000) as u16;
     match poll(&mut fds, PollTimeout::from(millis)) {
         Ok(_) | Err(Errno::EINTR) => Ok(()),
-        Err(error) => Err(EmulatorError::Wait(error.into())),
+        Err(error) => Err(EmulatorError::io("cannot wait for clients", error)),
     }
 }
 
