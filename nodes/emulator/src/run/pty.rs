@@ -195,7 +195,10 @@ impl Link {
     fn make(path: &Path, target: &Path) -> Result<Self, EmulatorError> {
         let failed = |error| {
             let path = path.display();
-            EmulatorError::io(format!("{path}: cannot make the link to the pseudo-terminal"), error)
+            EmulatorError::io(
+                format!("{path}: cannot make the link to the pseudo-terminal"),
+                error,
+            )
         };
         if path.is_symlink() {
             std::fs::remove_file(path).map_err(failed)?;
