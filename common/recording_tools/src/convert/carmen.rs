@@ -86,17 +86,9 @@ pub(super) struct Parameter {
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Broken {
     pub(super) name: String,
-    pub(super) fault: Fault,
+    /// Fault in words, after the name of the line.
+    pub(super) fault: &'static str,
     pub(super) reason: String,
-}
-
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub(super) enum Fault {
-    CutShort,
-    Count,
-    Number,
-    Time,
-    Angles,
 }
 
 impl Laser {

@@ -72,15 +72,16 @@ pub fn run(config: &Config) -> anyhow::Result<ExitCode> {
             "{from} is no file, and is read twice: save it to one first"
         )));
     }
-    let convert = match file::kind(&config.from).map_err(failed("read", &config.from))? {
-        file::Kind::Log => log_to_recording,
-        file::Kind::Recording if is_bag(&config.from) => bag_to_recording,
-        file::Kind::Recording => {
-            // An unreadable file is reported by the code that reads recordings.
-            Recording::open(&config.from)?;
+    let convert = match file::is_log(from).map_err(failed("read", from))? {
+        true => log_to_recording,
+        false if is_bag(from) => bag_to_recording,
+        false => {
+            if file::RECORDINGS.contains(&ending(from).as_str()) {
+                // An unreadable file is reported by the code that reads recordings.
+                Recording::open(from)?;
+            }
             return Err(none());
         }
-        file::Kind::Unknown => return Err(none()),
     };
     let (file, unfinished) = create(&config.to, config.force)?;
     let report = convert(config, file)?;
@@ -123,14 +124,14 @@ fn print_report(report: &Report, to: &Path) -> ExitCode {
             report.moved_mounts
         ));
     }
-    if report.tally.missing_readings > 0 {
+    if report.missing_readings > 0 {
         say(&format!(
             "{} readings are not numbers, and their beams are missing",
-            report.tally.missing_readings
+            report.missing_readings
         ));
     }
-    if let Some(left_out) = report.tally.text() {
-        say(&format!("left out: {left_out}"));
+    if let Some(left_out) = report.left_out() {
+        say(&left_out);
     }
     let losses = report.losses();
     losses.iter().for_each(|loss| say(loss));
@@ -142,9 +143,9 @@ fn log_to_recording(config: &Config, to: BufWriter<File>) -> anyhow::Result<Repo
         truth: config.truth,
         range_max_m: config.range_max,
     };
-    let open = || file::open(&config.from).map_err(failed("read", &config.from));
+    let log = file::open(&config.from).map_err(failed("read", &config.from))?;
     let mut writer = RecordingWriter::new(to, Packing::Zstd)?;
-    let report = to_recording::convert(open, &rules, &mut writer)?;
+    let report = to_recording::convert(log, &rules, &mut writer)?;
     finish(writer, config)?;
     Ok(report)
 }

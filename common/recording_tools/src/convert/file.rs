@@ -1,4 +1,4 @@
-//! Detects the format of a file, and reads the lines of a log.
+//! Detects logs, and reads their lines.
 //!
 //! The content decides if the extension does not; compression with gzip is detected from the
 //! content alone.
@@ -13,30 +13,18 @@ use super::carmen;
 
 const GZIP: &[u8] = b"\x1f\x8b";
 
-/// Magic of recordings and bags; whether they can be read is checked elsewhere.
-const RECORDINGS: [&[u8]; 4] = [
-    b"\x89MCAP0\r\n",
-    b"SQLite format 3\0",
-    b"#ROSBAG V",
-    b"\x28\xb5\x2f\xfd",
-];
+/// Extensions of recordings and bags; whether they can be read is checked elsewhere.
+pub(super) const RECORDINGS: [&str; 3] = ["mcap", "db3", "bag"];
 
 const HEAD_BYTES: u64 = 64 << 10;
 
 /// Longest line: 36000 ranges and as many remissions of twelve digits need less.
 const MAX_LINE_BYTES: u64 = 1 << 20;
 
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Kind {
-    Log,
-    /// A recording or bag, or a folder of such.
-    Recording,
-    Unknown,
-}
-
-pub(super) fn kind(path: &Path) -> io::Result<Kind> {
+/// True if the file is a log, by its name or, if that does not decide, by its content.
+pub(super) fn is_log(path: &Path) -> io::Result<bool> {
     if path.is_dir() {
-        return Ok(Kind::Recording);
+        return Ok(false);
     }
     let mut head = Vec::new();
     // A file that is cut within its head is still detected by the rest.
@@ -44,14 +32,16 @@ pub(super) fn kind(path: &Path) -> io::Result<Kind> {
     if head.is_empty() {
         read?;
     }
-    if RECORDINGS.iter().any(|start| head.starts_with(start)) {
-        return Ok(Kind::Recording);
-    }
+    let is_line = |line: &[u8]| {
+        let text = String::from_utf8_lossy(line);
+        let name = text.split_ascii_whitespace().next();
+        name.is_some_and(carmen::is_known)
+    };
     Ok(match ending(path).as_str() {
-        "mcap" | "db3" | "bag" => Kind::Recording,
-        "log" | "clf" | "txt" => Kind::Log,
-        _ if is_log(&head) => Kind::Log,
-        _ => Kind::Unknown,
+        _ if recording::is_recording(path) => false,
+        "log" | "clf" | "txt" => true,
+        other if RECORDINGS.contains(&other) => false,
+        _ => head.split(|byte| *byte == b'\n').any(is_line),
     })
 }
 
@@ -76,25 +66,22 @@ pub(super) fn open(path: &Path) -> io::Result<Box<dyn BufRead>> {
     }
 }
 
-/// Passes each line to `on_line` with its number, from 1; a line that is too long is cut. The inner
-/// result is the error if the log cannot be read to its end.
-pub(super) fn for_each_line<E>(
+/// Passes each line to `on_line` with its number, from 1; a line that is too long is cut.
+/// Fails if the log cannot be read to its end.
+pub(super) fn for_each_line(
     mut log: impl BufRead,
-    mut on_line: impl FnMut(u64, &str) -> Result<(), E>,
-) -> Result<io::Result<()>, E> {
+    mut on_line: impl FnMut(u64, &str),
+) -> io::Result<()> {
     let mut line = Vec::new();
     for number in 1.. {
-        match read_line(&mut log, &mut line) {
-            Ok(0) => break,
-            Ok(_) => {}
-            Err(error) => return Ok(Err(error)),
+        if read_line(&mut log, &mut line)? == 0 {
+            break;
         }
         // Logs are ASCII, except for comments and host names.
         let text = String::from_utf8_lossy(&line);
-        let text = text.strip_prefix('\u{feff}').unwrap_or(&text);
-        on_line(number, text)?;
+        on_line(number, text.strip_prefix('\u{feff}').unwrap_or(&text));
     }
-    Ok(Ok(()))
+    Ok(())
 }
 
 fn read_line(log: &mut impl BufRead, line: &mut Vec<u8>) -> io::Result<usize> {
@@ -104,15 +91,6 @@ fn read_line(log: &mut impl BufRead, line: &mut Vec<u8>) -> io::Result<usize> {
         log.skip_until(b'\n')?;
     }
     Ok(read)
-}
-
-fn is_log(head: &[u8]) -> bool {
-    head.split(|byte| *byte == b'\n').any(|line| {
-        let text = String::from_utf8_lossy(line);
-        text.split_ascii_whitespace()
-            .next()
-            .is_some_and(carmen::is_known)
-    })
 }
 
 #[cfg(test)]
@@ -130,27 +108,26 @@ mod tests {
     }
 
     #[test]
-    fn endings_and_contents_show_the_kind() {
+    fn endings_and_contents_show_a_log() {
         let folder = tempfile::tempdir().unwrap();
-        let kind_of = |name: &str, content: &[u8]| {
+        let is_log_named = |name: &str, content: &[u8]| {
             let path = folder.path().join(name);
             std::fs::write(&path, content).unwrap();
-            kind(&path).unwrap()
+            is_log(&path).unwrap()
         };
         let log = b"# a log\nODOM 1 2 3\n";
         for name in "a.log a.CLF a.Txt a.log.gz a.TXT.GZ a.gz a a.log.old".split(' ') {
-            assert_eq!(kind_of(name, log), Kind::Log, "{name}");
-            assert_eq!(kind_of(name, &packed(log)), Kind::Log, "{name}");
-            assert_eq!(kind_of(name, b"\x89MCAP0\r\n.."), Kind::Recording, "{name}");
+            assert!(is_log_named(name, log), "{name}");
+            assert!(is_log_named(name, &packed(log)), "{name}");
+            assert!(!is_log_named(name, b"\x89MCAP0\r\n.."), "{name}");
         }
-        assert_eq!(kind_of("a.log", b""), Kind::Log);
-        assert_eq!(kind_of("a.txt", b"hello"), Kind::Log);
+        assert!(is_log_named("a.log", b"") && is_log_named("a.txt", b"hello"));
         for name in ["a.mcap", "a.MCAP", "a.db3", "a.mcap.gz"] {
-            assert_eq!(kind_of(name, b"hello"), Kind::Recording, "{name}");
+            assert!(!is_log_named(name, log), "{name}");
         }
-        assert_eq!(kind_of("a.csv", b"hello\nODOMETRY"), Kind::Unknown);
-        assert_eq!(kind(folder.path()).unwrap(), Kind::Recording);
-        assert!(kind(&folder.path().join("none.log")).is_err());
+        assert!(!is_log_named("a.csv", b"hello\nODOMETRY"));
+        assert!(!is_log(folder.path()).unwrap());
+        assert!(is_log(&folder.path().join("none.log")).is_err());
     }
 
     #[test]
@@ -160,9 +137,8 @@ mod tests {
         let mut lines = Vec::new();
         let outcome = for_each_line(text.as_bytes(), |number, line| {
             lines.push((number, line.trim_end().to_owned()));
-            Ok::<_, ()>(())
         });
-        outcome.unwrap().unwrap();
+        outcome.unwrap();
         let cut = "x".repeat(MAX_LINE_BYTES as usize);
         let expected = [(1, "one"), (2, &*cut), (3, ""), (4, "four")];
         assert_eq!(
@@ -182,9 +158,8 @@ mod tests {
             let mut lines = Vec::new();
             let outcome = for_each_line(open(&path).unwrap(), |_, line| {
                 lines.push(line.to_owned());
-                Ok::<_, ()>(())
             });
-            (lines, outcome.unwrap().is_ok())
+            (lines, outcome.is_ok())
         };
         let (lines, is_whole) = read(&whole);
         assert!(is_whole && lines == ["one\n", "two\n"], "{lines:?}");

@@ -4,9 +4,7 @@ use std::str::SplitAsciiWhitespace;
 
 use geometry::Pose;
 
-use super::carmen::{
-    Angles, Broken, Fault, Kind, Laser, Line, Odometry, Parameter, Poses, laser_named,
-};
+use super::carmen::{Angles, Broken, Kind, Laser, Line, Odometry, Parameter, Poses, laser_named};
 
 /// Largest number of ranges in a line: a full turn in steps of a hundredth of a degree.
 const MAX_READINGS: usize = 36_000;
@@ -35,7 +33,7 @@ pub(super) fn parse(line: &str) -> Result<Line, Broken> {
     })
 }
 
-type Refusal = (Fault, String);
+type Refusal = (&'static str, String);
 
 #[derive(Clone)]
 struct Words<'a> {
@@ -130,13 +128,13 @@ impl<'a> Words<'a> {
         let count = word.parse().ok().filter(|count| *count <= MAX_READINGS);
         let count: usize = count.ok_or_else(|| {
             let reason = format!("{word:?} is not a count of {what}; allowed: 0 to {MAX_READINGS}");
-            (Fault::Count, reason)
+            ("with a wrong count", reason)
         })?;
         let mut values = Vec::new();
         for place in 1..=count {
             let word = self.words.next().ok_or_else(|| {
                 let reason = format!("of {count} {what} {} are there", place - 1);
-                (Fault::CutShort, reason)
+                ("cut short", reason)
             })?;
             values.push(reading(word));
         }
@@ -149,7 +147,10 @@ impl<'a> Words<'a> {
         let word = self.next("time")?;
         exact_ns(word).ok_or_else(|| {
             let allowed = "allowed: seconds from 0 to 9e9, as 976052857.3375";
-            (Fault::Time, format!("{word:?} is no time; {allowed}"))
+            (
+                "with a wrong time",
+                format!("{word:?} is no time; {allowed}"),
+            )
         })
     }
 
@@ -162,11 +163,11 @@ impl<'a> Words<'a> {
     fn number(&mut self, what: &str) -> Result<f64, Refusal> {
         let word = self.next(what)?;
         let number = word.parse().ok().filter(|number: &f64| number.is_finite());
-        number.ok_or_else(|| (Fault::Number, format!("{word:?} is no {what}")))
+        number.ok_or_else(|| ("with what is no number", format!("{word:?} is no {what}")))
     }
 
     fn next(&mut self, what: &str) -> Result<&'a str, Refusal> {
-        let cut = || (Fault::CutShort, format!("it ends before the {what}"));
+        let cut = || ("cut short", format!("it ends before the {what}"));
         self.words.next().ok_or_else(cut)
     }
 }
@@ -297,23 +298,19 @@ mod tests {
         for (line, fault, reason) in [
             (
                 "FLASER 99999999999 1",
-                Fault::Count,
+                "with a wrong count",
                 "\"99999999999\" is not a count of readings; allowed: 0 to 36000",
             ),
-            ("FLASER 2 1.0", Fault::CutShort, "of 2 readings 1 are there"),
+            ("FLASER 2 1.0", "cut short", "of 2 readings 1 are there"),
             (
                 "FLASER 1 1.0 0 0 nan",
-                Fault::Number,
+                "with what is no number",
                 "\"nan\" is no laser pose",
             ),
-            (
-                "ODOM 1 2 3 4 5 6",
-                Fault::CutShort,
-                "it ends before the time",
-            ),
+            ("ODOM 1 2 3 4 5 6", "cut short", "it ends before the time"),
             (
                 "ODOM 1 2 3 4 5 6 -7",
-                Fault::Time,
+                "with a wrong time",
                 "\"-7\" is no time; allowed: seconds from 0 to 9e9, as 976052857.3375",
             ),
         ] {

@@ -9,12 +9,11 @@ use ros::{Time, Transform};
 use transport::with_causes;
 
 use super::angles;
-use super::carmen::{Broken, Fault, Laser, Line, Odometry};
+use super::carmen::{Broken, Laser, Line, Odometry};
 use super::file::for_each_line;
+use super::lasers::{Source, Survey};
 use super::read;
 use super::report::Report;
-use super::source::Source;
-use super::survey::Survey;
 use crate::messages;
 
 /// Largest difference of two equal mounts, in metres and radians: logs have six digits.
@@ -26,25 +25,44 @@ pub(super) struct Rules {
     pub(super) range_max_m: f32,
 }
 
-/// Converts a log, which `open` opens for each of two passes. Lines that cannot be read are
-/// counted.
-pub(super) fn convert<W: Write + Seek, L: BufRead>(
-    open: impl Fn() -> anyhow::Result<L>,
+/// Converts a log. Lines that cannot be read are counted.
+pub(super) fn convert<W: Write + Seek>(
+    log: impl BufRead,
     rules: &Rules,
     writer: &mut RecordingWriter<W>,
 ) -> anyhow::Result<Report> {
-    let survey = Survey::of(open()?);
+    let (mut survey, mut report) = (Survey::default(), Report::default());
+    let mut measurements = Vec::new();
+    let read = for_each_line(log, |number, line| match read::parse(line) {
+        Ok(Line::Other(name)) => report.other(&name),
+        Ok(line) => {
+            survey.see(&line);
+            if matches!(line, Line::Laser(_) | Line::Odometry(_)) {
+                measurements.push((number, line));
+            }
+        }
+        Err(broken) => report.broken(number, &broken),
+    });
+    report.damage = read.err().map(|error| with_causes(&error));
     let mut conversion = Conversion {
         rules,
         writer,
-        sources: Source::all(&survey),
+        sources: survey.sources(),
         survey: &survey,
         mounts: Vec::new(),
         odometry_ns: BTreeSet::new(),
-        report: Report::default(),
+        report,
     };
-    let read = for_each_line(open()?, |number, line| conversion.line(number, line))?;
-    conversion.report.damage = read.err().map(|error| with_causes(&error));
+    for (number, line) in &measurements {
+        let broken = match line {
+            Line::Laser(laser) => conversion.laser(laser)?,
+            Line::Odometry(odometry) => conversion.odometry(odometry)?,
+            _ => None,
+        };
+        if let Some(broken) = broken {
+            conversion.report.broken(*number, &broken);
+        }
+    }
     conversion.report.remarks = conversion.sources.iter().map(Source::text).collect();
     Ok(conversion.report)
 }
@@ -60,28 +78,12 @@ struct Conversion<'a, W: Write + Seek> {
 }
 
 impl<W: Write + Seek> Conversion<'_, W> {
-    fn line(&mut self, number: u64, line: &str) -> anyhow::Result<()> {
-        let broken = match read::parse(line) {
-            Ok(Line::Laser(laser)) => self.laser(&laser)?,
-            Ok(Line::Odometry(odometry)) => self.odometry(&odometry)?,
-            Ok(Line::Parameter(_) | Line::Nothing) => None,
-            Ok(Line::Other(name)) => {
-                self.report.tally.other(&name);
-                None
-            }
-            Err(broken) => Some(broken),
-        };
-        if let Some(broken) = broken {
-            self.report.tally.broken(number, &broken);
-        }
-        Ok(())
-    }
-
     /// Writes a scan, or returns what is wrong with its line.
     fn laser(&mut self, laser: &Laser) -> anyhow::Result<Option<Broken>> {
         let is_source = |source: &&mut Source| source.is_of(laser);
         let Some(source) = self.sources.iter_mut().find(is_source) else {
-            self.report.tally.repeated(laser.name());
+            let kind = format!("{} with scans of other lines", laser.name());
+            self.report.leave_out(&kind);
             return Ok(None);
         };
         let Some(stamp) = Time::from_ns(laser.time_ns) else {
@@ -93,7 +95,7 @@ impl<W: Write + Seek> Conversion<'_, W> {
             Err(reason) => {
                 return Ok(Some(Broken {
                     name: laser.name(),
-                    fault: Fault::Angles,
+                    fault: "with wrong angles",
                     reason,
                 }));
             }
@@ -101,7 +103,7 @@ impl<W: Write + Seek> Conversion<'_, W> {
         let message = source.scan(laser, angles, stamp, self.rules.range_max_m);
         let (topic, frame) = (source.topic.clone(), source.frame.clone());
         let missing = laser.ranges.iter().filter(|range| range.is_nan()).count();
-        self.report.tally.missing_readings += missing as u64;
+        self.report.missing_readings += missing as u64;
         self.place(laser, stamp, &topic, &frame)?;
         if let Some(poses) = laser.poses {
             self.odometry_at(stamp, poses.robot, (0.0, 0.0))?;
@@ -185,7 +187,7 @@ impl<W: Write + Seek> Conversion<'_, W> {
 fn late(name: String, time_ns: i64) -> Broken {
     Broken {
         name,
-        fault: Fault::Time,
+        fault: "with a wrong time",
         reason: format!("a recording cannot say a time of {time_ns} ns"),
     }
 }
@@ -211,7 +213,7 @@ FLASER 3 2.0 81.83 2.5 1.5 0 0 1 0 0 2.0 h 2.0
             range_max_m: 80.0,
         };
         let mut writer = RecordingWriter::in_memory(Packing::Zstd).unwrap();
-        let report = convert(|| Ok(LOG.as_bytes()), &rules, &mut writer).unwrap();
+        let report = convert(LOG.as_bytes(), &rules, &mut writer).unwrap();
         let bytes = writer.finish().unwrap().into_inner();
         (Recording::from_bytes("r.mcap", bytes).unwrap(), report)
     }
@@ -220,14 +222,12 @@ FLASER 3 2.0 81.83 2.5 1.5 0 0 1 0 0 2.0 h 2.0
     fn scans_odometry_and_the_mount_are_found() {
         let (recording, report) = converted(false);
         assert_eq!((report.scans, report.odometry), (2, 3));
-        assert_eq!((report.tally.broken_lines(), report.moved_mounts), (1, 0));
-        assert_eq!(
-            report.tally.first_broken.as_deref(),
-            Some("line 5, FLASER: of 3 readings 2 are there")
-        );
-        assert_eq!(
-            report.tally.text().as_deref(),
-            Some("1 FLASER line cut short")
+        assert_eq!(report.moved_mounts, 0);
+        let losses = report.losses();
+        let broken = "1; the first, line 5, FLASER: of 3 readings 2 are there";
+        assert!(
+            losses.len() == 1 && losses[0].ends_with(broken),
+            "{losses:?}"
         );
         assert_eq!(
             report.remarks,

@@ -1,10 +1,51 @@
-//! Contents of a recording.
+//! `backcast info`: lists the contents of a recording. Faults are left to `doctor`.
 
 use std::collections::BTreeMap;
+use std::fmt::Write as _;
+use std::path::PathBuf;
+use std::process::ExitCode;
 
+use command_line::LOST_DATA;
+use offline::TopicOptions;
 use recording::{Kind, MetadataRecord, Recording};
 use schemars::JsonSchema;
 use serde::Serialize;
+
+use crate::each::each;
+
+/// Options of `backcast info`.
+#[derive(Debug, clap::Args)]
+pub struct Config {
+    /// The recordings to describe: MCAP files, or bags of rosbag2 (their folders, or .db3)
+    #[arg(required = true, value_name = "FILE")]
+    recordings: Vec<PathBuf>,
+
+    #[command(flatten)]
+    topics: TopicOptions,
+
+    /// Print JSON, one object per file
+    #[arg(long)]
+    json: bool,
+}
+
+/// Describes the given recordings one after another; a damaged one up to its damage.
+pub fn run(config: &Config) -> anyhow::Result<ExitCode> {
+    let mut code = ExitCode::SUCCESS;
+    let any_failed = each(&config.recordings, &config.topics, |_, recording| {
+        let contents = Contents::of(&recording);
+        if contents.damage.is_some() {
+            code = ExitCode::from(LOST_DATA);
+        }
+        Ok(match config.json {
+            true => command_line::json::object(&contents) + "\n",
+            false => contents.text(),
+        })
+    })?;
+    Ok(match any_failed {
+        true => ExitCode::FAILURE,
+        false => code,
+    })
+}
 
 /// Statistics of a recording. Stamps are nanoseconds since 1970.
 #[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
@@ -74,6 +115,63 @@ impl Contents {
             damage: damage(recording),
         }
     }
+
+    /// Formats paragraphs for people: the file, its channels, metadata, attachments, damage.
+    fn text(&self) -> String {
+        let mut text = String::new();
+        // Writing to a string cannot fail.
+        let _ = self.write(&mut text);
+        text
+    }
+
+    fn write(&self, text: &mut String) -> std::fmt::Result {
+        let Contents {
+            recording,
+            messages,
+            chunks,
+            ..
+        } = self;
+        let megabytes = self.bytes as f64 * 1e-6;
+        writeln!(
+            text,
+            "{recording}: {megabytes:.2} MB, {messages} messages in {chunks} chunks"
+        )?;
+        if let Some((first, last)) = self.first_ns.zip(self.last_ns) {
+            let (from, to) = (first as f64 * 1e-9, last as f64 * 1e-9);
+            writeln!(text, "from {from:.3} to {to:.3} s, {:.1} s long", to - from)?;
+        }
+        table(&self.channels, text)?;
+        let taken = self.taken.iter();
+        let taken: Vec<String> = taken
+            .map(|(what, topic)| format!("{what} {topic}"))
+            .collect();
+        if !taken.is_empty() {
+            writeln!(text, "\n  taken: {}", taken.join(", "))?;
+        }
+        for unclear in &self.unclear {
+            writeln!(text, "\n  unclear: {unclear}")?;
+        }
+        for metadata in &self.metadata {
+            writeln!(text, "\nmetadata {}", metadata.name)?;
+            for (key, value) in &metadata.entries {
+                writeln!(text, "  {key:<14} {value}")?;
+            }
+        }
+        for file in &self.attachments {
+            writeln!(
+                text,
+                "\nattachment {}: {} bytes, {}",
+                file.name, file.bytes, file.media_type
+            )?;
+        }
+        if let Some(damage) = &self.damage {
+            writeln!(
+                text,
+                "\ndamaged: {damage}; what is listed here lies before that"
+            )?;
+        }
+        Ok(())
+    }
 }
 
 const TAKEN: [(&str, Kind); 3] = [
@@ -122,4 +220,30 @@ fn attachment(file: &recording::AttachedFile) -> Attachment {
         media_type: file.media_type.clone(),
         bytes: file.len(),
     }
+}
+
+/// Largest width of the column of topics; longer topics break the alignment.
+const MAX_WIDTH: usize = 80;
+
+fn table(channels: &[Channel], text: &mut String) -> std::fmt::Result {
+    let topics = channels.iter().map(|channel| channel.topic.len());
+    let width = topics.max().unwrap_or(0).clamp("channel".len(), MAX_WIDTH);
+    writeln!(
+        text,
+        "\n  {:<width$} {:>9} {:>8}  schema",
+        "channel", "messages", "hz"
+    )?;
+    for channel in channels {
+        let hz = channel.hz.map_or(String::new(), |hz| format!("{hz:.2}"));
+        let encoding = match channel.encoding.as_str() {
+            "cdr" => String::new(),
+            other => format!(" ({other})"),
+        };
+        writeln!(
+            text,
+            "  {:<width$} {:>9} {hz:>8}  {}{encoding}",
+            channel.topic, channel.messages, channel.schema
+        )?;
+    }
+    Ok(())
 }
