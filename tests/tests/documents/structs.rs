@@ -122,7 +122,7 @@ const JSON: &[(&str, &[(&str, &str)])] = &[
     ("A node of a graph", &[("common/launcher/src/run/control.rs", "NodeStatus")]),
     ("The recording of a graph", &[("common/launcher/src/run/control.rs", "Recording")]),
     ("`backcast logs --json`", &[("common/launcher/src/control/logs.rs", "LogLine")]),
-    ("`backcast info --json`", &[("common/recording_tools/src/info/contents.rs", "Contents")]),
+    ("`backcast info --json`", &[("common/recording_tools/src/info.rs", "Contents")]),
     ("`backcast doctor --json`", &[("common/recording_tools/src/doctor/command.rs", "Report")]),
     ("`backcast bench --json`", &[("common/bench/src/row.rs", "Row")]),
     ("The last pose", &[("nodes/tracker/src/memory.rs", "Remembered")]),
