@@ -1,96 +1,72 @@
 //! Selects the map for a scan: the newest one recorded before it, as in the graph, or the first one
 //! after it if there is none before. [`map_in`] returns the newest map.
 
-use std::borrow::Cow;
 use std::iter::Peekable;
 
 use anyhow::anyhow;
+use engine::grid::{CellRules, Grid, GridFrame};
 use map::OccupancyGrid;
-use recording::{Recording, RecordingError};
+use recording::Recording;
+use ros::OccupancyGridMsg;
 use transport::with_causes;
 
-/// A map with the log time from which it counts, or the reason why it cannot be decoded.
-type Due<'a> = (i64, Result<Cow<'a, OccupancyGrid>, String>);
+/// A map with the log time from which it counts, or the reason why it cannot be searched.
+type Due = (i64, Result<OccupancyGrid, String>);
 
-/// Maps of a recording by log time, or one map for all scans.
+/// Maps of a recording by log time.
 pub(super) struct Maps<'a> {
-    maps: Peekable<Box<dyn Iterator<Item = Due<'a>> + 'a>>,
+    maps: Peekable<Box<dyn Iterator<Item = Due> + 'a>>,
     /// True once a map has been returned.
     began: bool,
 }
 
 impl<'a> Maps<'a> {
-    /// Uses the given map for all scans, and ignores recorded ones.
-    pub(super) fn given(map: &'a OccupancyGrid) -> Self {
-        Maps::of(std::iter::once((i64::MIN, Ok(Cow::Borrowed(map)))))
-    }
-
     /// Contains no map, since the map has already been prepared.
     pub(super) fn none() -> Self {
         Maps::of(std::iter::empty())
     }
 
-    pub(super) fn recorded(recording: &'a Recording) -> Result<Self, RecordingError> {
-        let maps = recording.maps()?;
-        Ok(Maps::of(maps.map(|recorded| match recorded {
-            Ok((time_ns, map)) => {
-                let grid = map.to_grid().map(Cow::Owned);
-                (time_ns, grid.map_err(|error| with_causes(&error)))
-            }
+    /// Fails if the recording contains no map.
+    pub(super) fn recorded(recording: &'a Recording, rules: CellRules) -> anyhow::Result<Self> {
+        let maps = recording.maps()?.map(move |recorded| match recorded {
+            Ok((time_ns, map)) => (time_ns, searchable(&map, rules)),
             // A map that cannot be decoded has no log time and is due at once.
             Err(error) => (i64::MIN, Err(with_causes(&error))),
-        })))
+        });
+        let mut maps = Maps::of(maps);
+        match maps.maps.peek() {
+            Some(_) => Ok(maps),
+            None => Err(no_map(recording)),
+        }
     }
 
-    fn of(maps: impl Iterator<Item = Due<'a>> + 'a) -> Self {
-        let maps: Box<dyn Iterator<Item = Due<'a>> + 'a> = Box::new(maps);
+    fn of(maps: impl Iterator<Item = Due> + 'a) -> Self {
+        let maps: Box<dyn Iterator<Item = Due> + 'a> = Box::new(maps);
         Maps {
             maps: maps.peekable(),
             began: false,
         }
     }
 
-    pub(super) fn is_empty(&mut self) -> bool {
-        self.maps.peek().is_none()
-    }
-
-    /// Returns the maps that arrived since the last call, for a scan of this log time.
-    pub(super) fn since(
-        &mut self,
-        log_time_ns: i64,
-        check: impl Fn(&OccupancyGrid) -> Result<(), String>,
-    ) -> Arrived<'a> {
-        let mut arrived = Arrived::default();
-        // The first map counts for the scans before it, too.
-        let began = &mut self.began;
-        while let Some((_, map)) = self
-            .maps
-            .next_if(|(due_ns, _)| *due_ns <= log_time_ns || !*began)
-        {
-            *began = true;
-            arrived.take(map, &check);
-        }
-        arrived
+    /// Returns the next map that arrived before a scan of this log time. The first map counts for
+    /// the scans before it, too.
+    pub(super) fn next_for(&mut self, log_time_ns: i64) -> Option<Result<OccupancyGrid, String>> {
+        let is_due = |(due_ns, _): &Due| *due_ns <= log_time_ns || !self.began;
+        let (_, map) = self.maps.next_if(is_due)?;
+        self.began = true;
+        Some(map)
     }
 }
 
-#[derive(Debug, Default)]
-pub(super) struct Arrived<'a> {
-    pub(super) map: Option<Cow<'a, OccupancyGrid>>,
-    pub(super) refusals: Vec<String>,
-}
-
-impl<'a> Arrived<'a> {
-    fn take(
-        &mut self,
-        map: Result<Cow<'a, OccupancyGrid>, String>,
-        check: impl Fn(&OccupancyGrid) -> Result<(), String>,
-    ) {
-        match map.and_then(|map| check(&map).map(|()| map)) {
-            Ok(map) => self.map = Some(map),
-            Err(refusal) if self.refusals.contains(&refusal) => {}
-            Err(refusal) => self.refusals.push(refusal),
-        }
+/// Converts a recorded map, and checks that it can be searched, without preparing it.
+/// Fails with a reason: a field out of range, or no occupied or no free cell.
+pub fn searchable(map: &OccupancyGridMsg, rules: CellRules) -> Result<OccupancyGrid, String> {
+    let grid = map.to_grid().map_err(|error| with_causes(&error))?;
+    let (width, height) = sides_of(&grid);
+    let checked = Grid::new(width, height, &grid.cells, rules);
+    match checked.and_then(|grid| grid.check_use()) {
+        Ok(()) => Ok(grid),
+        Err(error) => Err(with_causes(&error)),
     }
 }
 
@@ -101,10 +77,18 @@ pub fn map_in(recording: &Recording) -> anyhow::Result<OccupancyGrid> {
 }
 
 /// Error for a recording without a map; its damage, if it is damaged.
-pub(super) fn no_map(recording: &Recording) -> anyhow::Error {
+fn no_map(recording: &Recording) -> anyhow::Error {
     let path = recording.path().display();
     match recording.damage_error() {
         Some(damage) => damage.into(),
         None => anyhow!("{path} has no map on /map: name one with --map map.yaml"),
     }
+}
+
+pub fn frame_of(map: &OccupancyGrid) -> GridFrame {
+    GridFrame::new(map.resolution_m, map.map_from_grid)
+}
+
+pub fn sides_of(map: &OccupancyGrid) -> (usize, usize) {
+    (map.width as usize, map.height as usize)
 }

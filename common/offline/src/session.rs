@@ -16,8 +16,7 @@ use recording::{Recording, RecordingError};
 use transport::with_causes;
 
 use super::heading::Headings;
-use super::layout::{check_map, frame_of, sides_of};
-use super::maps::{Arrived, Maps, no_map};
+use super::maps::{Maps, frame_of, sides_of};
 use super::motion::Motion;
 use super::options::{EngineOptions, NamedMap};
 use super::scans::Scans;
@@ -77,19 +76,13 @@ impl<'a> Session<'a> {
         given: Option<&'a OccupancyGrid>,
     ) -> anyhow::Result<Self> {
         let mut session = Session::unprepared(recording, options)?;
-        session.maps = match given {
-            Some(map) => Maps::given(map),
-            None => Maps::recorded(recording)?,
-        };
-        if session.maps.is_empty() {
-            return Err(no_map(recording));
-        }
         if let Some(map) = given {
             // An unusable given map is an error at once, since no scan could be searched.
-            session.maps.since(i64::MIN, |_| Ok(()));
             let prepared = session.prepare(Cow::Borrowed(map))?;
             prepared.with_context(|| unusable(&session.map_file.to_string_lossy()))?;
+            return Ok(session);
         }
+        session.maps = Maps::recorded(recording, options.engine.cells)?;
         Ok(session)
     }
 
@@ -168,22 +161,26 @@ impl<'a> Session<'a> {
 
     /// Prepares the map for a scan. A map that cannot be used is ignored, as in the graph.
     fn turn_to(&mut self, scan: &TakenScan) -> anyhow::Result<()> {
-        let rules = self.engine.cells;
-        let check =
-            |map: &OccupancyGrid| check_map(map, rules).map_err(|error| with_causes(&error));
-        let Arrived { map, mut refusals } = self.maps.since(scan.log_time_ns, check);
-        if let Some(map) = map
-            && let Err(error) = self.prepare(map)?
-        {
-            refusals.push(with_causes(&error));
+        let mut newest = None;
+        while let Some(map) = self.maps.next_for(scan.log_time_ns) {
+            match map {
+                Ok(map) => newest = Some(map),
+                Err(refusal) => self.refuse(refusal),
+            }
         }
-        for refusal in refusals {
-            let file = self.map_file.display();
-            self.notes
-                .push(format!("{file}: a map is ignored: {refusal}"));
-            self.refusal = refusal;
+        if let Some(map) = newest
+            && let Err(error) = self.prepare(Cow::Owned(map))?
+        {
+            self.refuse(with_causes(&error));
         }
         Ok(())
+    }
+
+    fn refuse(&mut self, refusal: String) {
+        let file = self.map_file.display();
+        self.notes
+            .push(format!("{file}: a map is ignored: {refusal}"));
+        self.refusal = refusal;
     }
 
     fn prepare(

@@ -14,7 +14,7 @@ use geometry::Pose;
 use index_cache::{IndexCache, Kept};
 use map::OccupancyGrid;
 
-use super::layout::{frame_of, sides_of};
+use super::maps::{frame_of, sides_of};
 use super::options::{EngineOptions, NamedMap};
 
 /// Maps prepared with all settings.

@@ -5,9 +5,8 @@ use std::collections::BTreeSet;
 use engine::grid::CellRules;
 use geometry::Pose;
 use map::OccupancyGrid;
-use offline::check_map;
+use offline::searchable;
 use recording::{GROUND_TRUTH, Kind, Mount, Mounted, Recording};
-use ros::OccupancyGridMsg;
 use transport::with_causes;
 
 use super::delay::odometry_delay;
@@ -105,7 +104,7 @@ fn map(recording: &Recording) -> Vec<Finding> {
     // Maps that do not decode are reported with the other messages.
     for (_, map) in maps.flatten() {
         seen += 1;
-        match usable(&map) {
+        match searchable(&map, CellRules::default()) {
             Ok(grid) => newest = Some(grid),
             Err(refusal) => refused.push(refusal),
         }
@@ -122,12 +121,6 @@ fn map(recording: &Recording) -> Vec<Finding> {
     }
     found.extend(newest.and_then(|grid| misnamed(recording, &grid, seen)));
     found
-}
-
-fn usable(map: &OccupancyGridMsg) -> Result<OccupancyGrid, String> {
-    let grid = map.to_grid().map_err(|error| with_causes(&error))?;
-    check_map(&grid, CellRules::default()).map_err(|error| with_causes(&error))?;
-    Ok(grid)
 }
 
 fn misnamed(recording: &Recording, grid: &OccupancyGrid, maps: u64) -> Option<Finding> {
