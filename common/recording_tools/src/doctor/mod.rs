@@ -8,7 +8,6 @@
 
 mod bands;
 mod checks;
-mod clock_offset;
 mod command;
 mod delay;
 mod drive;
