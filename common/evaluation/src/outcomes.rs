@@ -1,8 +1,9 @@
 //! Outcomes of the evaluated files: which requirements are missed, as lines, as exit code, and as a
 //! JUnit report for a build server.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::process::ExitCode;
+use std::time::Duration;
 
 use anyhow::Context;
 use command_line::output;
@@ -40,25 +41,36 @@ pub(crate) struct TotalLine<'a, T> {
     total: &'a T,
 }
 
+impl ReportOptions {
+    pub(crate) fn outcomes(&self) -> anyhow::Result<Outcomes> {
+        Outcomes::new("backcast evaluate", self.junit.as_ref(), self.force)
+    }
+}
+
 pub(crate) fn total_line(total: &impl Serialize) -> String {
     command_line::json::object(&TotalLine { total }) + "\n"
 }
 
 pub(crate) struct Outcomes {
+    command: &'static str,
     suites: Vec<TestSuite>,
     junit: Option<PathBuf>,
 }
 
 impl Outcomes {
-    /// Checks that the report can be written.
-    pub(crate) fn new(options: &ReportOptions) -> anyhow::Result<Self> {
-        let junit = options.junit.clone();
-        if let Some(file) = &junit {
-            output::prepare(file, options.force)?;
+    /// Checks that the report of a command can be written, if a file is named.
+    pub(crate) fn new(
+        command: &'static str,
+        junit: Option<&PathBuf>,
+        overwrites: bool,
+    ) -> anyhow::Result<Self> {
+        if let Some(file) = junit {
+            output::prepare(file, overwrites)?;
         }
         Ok(Outcomes {
+            command,
             suites: Vec::new(),
-            junit,
+            junit: junit.cloned(),
         })
     }
 
@@ -85,15 +97,29 @@ impl Outcomes {
     pub(crate) fn failed(&mut self, file: &str, error: &anyhow::Error, say: impl Fn(&str)) {
         let reason = format!("{error:#}");
         say(&reason);
-        let status = not_passed(NonSuccessKind::Error, reason);
-        self.add(file, "evaluation", status);
+        self.broken(file, "evaluation", reason);
+    }
+
+    pub(crate) fn broken(&mut self, file: &str, case: &str, reason: String) {
+        self.add(file, case, not_passed(NonSuccessKind::Error, reason));
+    }
+
+    /// Sets the time that the last file took.
+    pub(crate) fn took(&mut self, time: Duration) {
+        if let Some(suite) = self.suites.last_mut() {
+            suite.set_time(time);
+        }
     }
 
     /// Writes the report, if it is wanted, and returns the exit code.
     pub(crate) fn finish(self) -> anyhow::Result<ExitCode> {
-        let mut report = Report::new("backcast evaluate");
+        let mut report = Report::new(self.command);
         report.add_test_suites(self.suites);
-        write(&report, self.junit.as_deref())?;
+        if let Some(file) = &self.junit {
+            let text = report.to_string().map_err(std::io::Error::other);
+            text.and_then(|text| std::fs::write(file, text))
+                .with_context(|| format!("cannot write {}", file.display()))?;
+        }
         match report.failures + report.errors {
             0 => Ok(ExitCode::SUCCESS),
             _ => Ok(ExitCode::FAILURE),
@@ -110,15 +136,7 @@ impl Outcomes {
     }
 }
 
-/// Writes a report, if a file is named.
-pub(crate) fn write(report: &Report, file: Option<&Path>) -> anyhow::Result<()> {
-    let Some(file) = file else { return Ok(()) };
-    let text = report.to_string().map_err(std::io::Error::other);
-    text.and_then(|text| std::fs::write(file, text))
-        .with_context(|| format!("cannot write {}", file.display()))
-}
-
-pub(crate) fn not_passed(kind: NonSuccessKind, message: String) -> TestCaseStatus {
+fn not_passed(kind: NonSuccessKind, message: String) -> TestCaseStatus {
     let mut status = TestCaseStatus::non_success(kind);
     status.set_message(message);
     status
@@ -131,14 +149,9 @@ mod tests {
     #[test]
     fn the_report_has_a_suite_a_file_and_says_what_is_missed() {
         let folder = tempfile::tempdir().unwrap();
-        let options = ReportOptions {
-            json: false,
-            junit: Some(folder.path().join("new/report.xml")),
-            force: false,
-            total: false,
-        };
-        let file = options.junit.clone().unwrap();
-        let mut outcomes = Outcomes::new(&options).unwrap();
+        let file = folder.path().join("new/report.xml");
+        let new = |overwrites| Outcomes::new("backcast evaluate", Some(&file), overwrites);
+        let mut outcomes = new(false).unwrap();
         let said = std::cell::RefCell::new(String::new());
         let say = |line: &str| *said.borrow_mut() += &format!("{line}\n");
         outcomes.judged("a.mcap", None, &[], say);
@@ -160,12 +173,7 @@ mod tests {
         ] {
             assert!(text.contains(part), "{part}: {text}");
         }
-        assert!(Outcomes::new(&options).is_err(), "it is there already");
-        let force = ReportOptions {
-            force: true,
-            ..options
-        };
-        let outcomes = Outcomes::new(&force).unwrap();
-        assert_eq!(outcomes.finish().unwrap(), ExitCode::SUCCESS);
+        assert!(new(false).is_err(), "it is there already");
+        assert_eq!(new(true).unwrap().finish().unwrap(), ExitCode::SUCCESS);
     }
 }

@@ -14,7 +14,7 @@ use super::judge::{Evaluation, Judged, Total, complaint};
 use super::limits::Limits;
 use super::memory;
 use super::table::Table;
-use crate::outcomes::{Outcomes, ReportOptions, total_line};
+use crate::outcomes::{ReportOptions, total_line};
 use crate::sequence::{self, SequenceOptions, Task};
 use crate::trust;
 use crate::truths::{TruthOptions, Truths};
@@ -81,7 +81,7 @@ pub fn run(config: &Config) -> anyhow::Result<ExitCode> {
         return judge_answers(file, config);
     }
     let map = config.options.load_map(&config.bags)?;
-    let mut outcomes = Outcomes::new(&config.report)?;
+    let mut outcomes = config.report.outcomes()?;
     if config.sequence.sequence {
         let task = Task {
             bags: &bags,
@@ -154,7 +154,7 @@ fn judge_answers(file: &Path, config: &Config) -> anyhow::Result<ExitCode> {
             "--answers are those to one recording; {files} are given"
         )));
     };
-    let mut outcomes = Outcomes::new(&config.report)?;
+    let mut outcomes = config.report.outcomes()?;
     let options = (&config.answers, &config.truths, &config.options);
     match answers::evaluate(file, bag, options) {
         Ok((figures, reached)) => {

@@ -5,15 +5,16 @@ use std::process::ExitCode;
 use std::time::Instant;
 
 use anyhow::anyhow;
-use command_line::{output, say, stdout, wrong_use};
+use command_line::{say, stdout, wrong_use};
 use launcher::descriptor::{self, Builds, DEFAULT_FILE};
 use launcher::run::build;
 use transport::GraphName;
 
 use super::case::{self, Case};
 use super::compare::{Tolerance, differences, summary, table};
-use super::outcome::{self, Object, Outcome};
+use super::outcome::{Object, Outcome};
 use super::play;
+use crate::outcomes::Outcomes;
 
 pub const NOTES: &str = "\
 A case is a folder with recording.mcap (or the folder recording, of a bag), expected.json, and
@@ -73,9 +74,7 @@ impl Config {
 /// Replays the recordings; one whose graph fails is reported, and the next one follows.
 pub fn run(config: &Config) -> anyhow::Result<ExitCode> {
     transport::node::start_logging().map_err(wrong_use)?;
-    if let Some(file) = &config.junit {
-        output::prepare(file, config.force)?;
-    }
+    let mut outcomes = Outcomes::new("backcast regress", config.junit.as_ref(), config.force)?;
     let cases = case::all_in(&config.folders)?;
     let mut descriptor = descriptor::load(&config.dataflow, Builds::Run)?;
     // The replayer is the same for all cases, and is built with the other nodes.
@@ -83,24 +82,15 @@ pub fn run(config: &Config) -> anyhow::Result<ExitCode> {
         play::direct(&mut descriptor, case)?;
     }
     build::build_all(&descriptor.dataflow, &descriptor.folder)?;
-    let mut outcomes = Vec::new();
     for case in &cases {
         let outcome = replay(config, case);
         stdout::print(&match config.json {
             true => command_line::json::object(&Object::of(&outcome, config.accept)) + "\n",
             false => text(&outcome, config.accept),
         })?;
-        outcomes.push(outcome);
+        outcome.add_to(&mut outcomes, config.accept);
     }
-    crate::outcomes::write(&outcome::report(&outcomes), config.junit.as_deref())?;
-    let is_good = |outcome: &Outcome| match config.accept {
-        true => outcome.result.is_ok(),
-        false => outcome.is_as_expected(),
-    };
-    match outcomes.iter().all(is_good) {
-        true => Ok(ExitCode::SUCCESS),
-        false => Ok(ExitCode::FAILURE),
-    }
+    outcomes.finish()
 }
 
 fn replay(config: &Config, case: &Case) -> Outcome {

@@ -3,12 +3,11 @@
 use std::collections::BTreeMap;
 use std::time::Duration;
 
-use quick_junit::{NonSuccessKind, Report, TestCase, TestCaseStatus, TestSuite};
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use super::compare::{Difference, table};
-use crate::outcomes::not_passed;
+use super::compare::Difference;
+use crate::outcomes::Outcomes;
 use crate::text;
 
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -21,10 +20,6 @@ pub(super) struct Outcome {
 }
 
 impl Outcome {
-    pub(super) fn is_as_expected(&self) -> bool {
-        self.result.as_ref().is_ok_and(Vec::is_empty)
-    }
-
     /// One line about the failure; `None` if all is as expected.
     pub(super) fn complaint(&self) -> Option<String> {
         match &self.result {
@@ -32,6 +27,28 @@ impl Outcome {
             Ok(differences) => Some(format!("{} differences", differences.len())),
             Err(problem) => Some(problem.clone()),
         }
+    }
+
+    /// Adds a test case per scan, and one for the error; differences that are accepted are none.
+    pub(super) fn add_to(&self, outcomes: &mut Outcomes, accepted: bool) {
+        let mut by_scan: BTreeMap<i64, Vec<String>> = BTreeMap::new();
+        for difference in self.result.iter().flatten().filter(|_| !accepted) {
+            let (what, expected, found) =
+                (difference.what, &difference.expected, &difference.found);
+            let of_scan = by_scan.entry(difference.stamp_ns).or_default();
+            of_scan.push(format!("{what}: expected {expected}, found {found}"));
+        }
+        let mut of = |&stamp_ns: &i64| (stamp_ns, by_scan.remove(&stamp_ns).unwrap_or_default());
+        let found: Vec<_> = self.scans.iter().map(&mut of).collect();
+        // Last, expected scans without a result.
+        for (stamp_ns, differences) in found.into_iter().chain(by_scan) {
+            let scan = format!("scan {}", text::seconds(stamp_ns));
+            outcomes.judged(&self.name, Some(&scan), &differences, |_| ());
+        }
+        if let Err(problem) = &self.result {
+            outcomes.broken(&self.name, "recording", problem.clone());
+        }
+        outcomes.took(self.took);
     }
 }
 
@@ -65,52 +82,6 @@ impl<'a> Object<'a> {
     }
 }
 
-/// JUnit report: a suite per recording, and a test case per scan and per error.
-pub(super) fn report(outcomes: &[Outcome]) -> Report {
-    let mut report = Report::new("backcast regress");
-    report.add_test_suites(outcomes.iter().map(suite));
-    report
-}
-
-fn suite(outcome: &Outcome) -> TestSuite {
-    let mut by_scan: BTreeMap<i64, Vec<Difference>> = BTreeMap::new();
-    for difference in outcome.result.iter().flatten() {
-        let of_scan = by_scan.entry(difference.stamp_ns).or_default();
-        of_scan.push(difference.clone());
-    }
-    let mut suite = TestSuite::new(outcome.name.clone());
-    suite.set_time(outcome.took);
-    let scan = |stamp_ns: i64, differences: &[Difference]| {
-        let status = match differences {
-            [] => TestCaseStatus::success(),
-            differences => failed(differences),
-        };
-        let mut case = TestCase::new(format!("scan {}", text::seconds(stamp_ns)), status);
-        case.set_classname(outcome.name.clone());
-        case
-    };
-    let mut of = |&stamp_ns: &i64| (stamp_ns, by_scan.remove(&stamp_ns).unwrap_or_default());
-    let found: Vec<_> = outcome.scans.iter().map(&mut of).collect();
-    // Last, expected scans without a result.
-    for (stamp_ns, differences) in found.into_iter().chain(by_scan) {
-        suite.add_test_case(scan(stamp_ns, &differences));
-    }
-    if let Err(problem) = &outcome.result {
-        let status = not_passed(NonSuccessKind::Error, problem.clone());
-        let mut case = TestCase::new("recording", status);
-        case.set_classname(outcome.name.clone());
-        suite.add_test_case(case);
-    }
-    suite
-}
-
-fn failed(differences: &[Difference]) -> TestCaseStatus {
-    let names: Vec<&str> = differences.iter().map(|it| it.what).collect();
-    let mut status = not_passed(NonSuccessKind::Failure, names.join(", "));
-    status.set_description(table(differences));
-    status
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -139,16 +110,22 @@ mod tests {
             outcome("changed", &[7_000_000_001, 8_000_000_000], Ok(differences)),
             outcome("broken", &[], Err("no map".to_owned())),
         ];
-        let text = report(&outcomes).to_string().unwrap();
+        let folder = tempfile::tempdir().unwrap();
+        let file = folder.path().join("report.xml");
+        let mut report = Outcomes::new("backcast regress", Some(&file), false).unwrap();
+        for outcome in &outcomes {
+            outcome.add_to(&mut report, false);
+        }
+        report.finish().unwrap();
+        let text = std::fs::read_to_string(&file).unwrap();
         for part in [
             "tests=\"6\"",
             "failures=\"2\"",
             "errors=\"1\"",
             "<testsuite name=\"sound\" tests=\"2\"",
             "<testcase name=\"scan 7.000000001\" classname=\"changed\"",
-            "message=\"verdict, x_m\"",
-            "message=\"scan\"",
-            "&lt;PoorFit&gt;",
+            "message=\"verdict: expected Unique, found &lt;PoorFit&gt;; x_m: expected",
+            "message=\"scan: expected",
             "message=\"no map\"",
         ] {
             assert!(text.contains(part), "{part}: {text}");
