@@ -6,8 +6,7 @@ use messages::{HypothesesHeader, Hypothesis, Verdict};
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use super::frame::Frame;
-use super::place::{Candidate, Place, map_id};
+use super::place::{Candidate, Frame, Place, map_id};
 
 pub(super) const NS_PER_MS: f64 = 1e6;
 

@@ -3,7 +3,6 @@
 //! tracker's pose, `rows` joins both in either order, and `statistics` judges them. All pure.
 
 mod answer;
-mod frame;
 mod place;
 mod rows;
 pub mod statistics;
@@ -11,7 +10,6 @@ pub mod testing;
 mod tracked;
 
 pub use answer::{ScanAnswer, number};
-pub use frame::Frame;
-pub use place::{Candidate, Place, map_id};
+pub use place::{Candidate, Frame, Place, map_id};
 pub use rows::Rows;
 pub use tracked::{Row, TrackedPose};

@@ -6,8 +6,7 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::answer::{NS_PER_MS, ScanAnswer, number, numbers, seconds, with_words};
-use super::frame::Frame;
-use super::place::Place;
+use super::place::{Frame, Place};
 
 /// The tracker's pose, with its state.
 #[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
