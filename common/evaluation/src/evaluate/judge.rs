@@ -11,6 +11,7 @@ use super::given::GivenPose;
 use crate::trust::{Said, Trust};
 
 /// Result for a scan with a true pose.
+#[derive(Default)]
 pub(super) struct Judged {
     truth: Pose,
     answer: answers::statistics::Answer,
@@ -116,7 +117,7 @@ impl Judged {
             probability: best.map(|best| best.probability),
             cpu_ms: Some(cpu_ms),
             is_held: is_held && found.verdict == Verdict::Unique,
-            refusal: None,
+            ..Judged::default()
         }
     }
 
@@ -132,23 +133,15 @@ impl Judged {
                 verdict: Some(verdict),
             },
             probability: given.probability,
-            cpu_ms: None,
-            is_held: false,
-            refusal: None,
+            ..Judged::default()
         }
     }
 
     pub(super) fn refusal(truth: Pose, reason: String) -> Self {
         Judged {
             truth,
-            answer: answers::statistics::Answer {
-                poses: Vec::new(),
-                verdict: None,
-            },
-            probability: None,
-            cpu_ms: None,
-            is_held: false,
             refusal: Some(reason),
+            ..Judged::default()
         }
     }
 }
@@ -301,24 +294,5 @@ pub(super) mod tests {
         assert!((evaluation.error_m.median.unwrap() - 0.1).abs() < 1e-12);
         assert!((evaluation.error_m.p90.unwrap() - 0.3).abs() < 1e-12);
         assert!((evaluation.error_deg.p90.unwrap() - 0.3).abs() < 1e-12);
-    }
-
-    #[test]
-    fn what_was_said_is_kept_beside_what_was_right() {
-        let said = evaluation().probabilities;
-        assert_eq!((said[2].from, said[2].to), (0.4, 0.6));
-        let half = (said[2].answers, said[2].right, said[2].mean);
-        assert_eq!(half, (4, 2, Some(0.5)));
-        let others = said.iter().map(|said| said.answers).sum::<u64>() - 4;
-        assert_eq!(others, 0);
-    }
-
-    #[test]
-    fn refused_scans_are_counted_and_the_first_reason_kept() {
-        assert_eq!(complaint(&[]), None);
-        let refused =
-            ["empty", "too long"].map(|reason| Judged::refusal(Pose::IDENTITY, reason.to_owned()));
-        let expected = "scans rejected: 2; the first: empty";
-        assert_eq!(complaint(&refused).unwrap(), expected);
     }
 }

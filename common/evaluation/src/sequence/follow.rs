@@ -4,7 +4,7 @@ use engine::tracking::TrackingConfig;
 use offline::World;
 
 use super::drive::Moment;
-use super::run::{Run, Said, Tally};
+use super::run::{RIGHT, Run, Said, Tally};
 use crate::text::share;
 
 /// The robot counts as lost, and is put back to the truth, if it is off by more than this (metres,
@@ -19,15 +19,10 @@ pub(super) struct Followed {
     pub(super) tally: Tally,
     /// Indices of the moments at which it was lost.
     pub(super) losses: Vec<usize>,
-    sums: Sums,
     /// Number of times that Unique was given up although the pose was right.
     pub(super) false_alarms: u64,
     pub(super) hours: f64,
     pub(super) tracking_ms: Vec<f64>,
-}
-
-#[derive(Debug, Clone, Copy, Default)]
-struct Sums {
     moments: u32,
     unique: u32,
     /// Moments with a truth at which it was not lost, and sums of their errors.
@@ -38,33 +33,54 @@ struct Sums {
     /// Unique moments near the truth, and those of them whose 95 % ellipse contains it.
     unique_truths: u32,
     held: u32,
+    /// True if the last moment with a truth was Unique and right.
+    was_right: bool,
 }
 
 impl Followed {
     pub(super) fn rms_m(&self) -> Option<f64> {
-        self.root_mean(self.sums.squares_m)
+        self.root_mean(self.squares_m)
     }
 
     pub(super) fn rms_deg(&self) -> Option<f64> {
-        self.root_mean(self.sums.squares_deg)
+        self.root_mean(self.squares_deg)
     }
 
     pub(super) fn max_m(&self) -> Option<f64> {
-        (self.sums.truths > 0).then_some(self.sums.max_m)
+        (self.truths > 0).then_some(self.max_m)
     }
 
     /// Share of the Unique moments near the truth whose 95 % ellipse contains it.
     pub(super) fn in_ellipse(&self) -> Option<f64> {
-        share(self.sums.held.into(), self.sums.unique_truths.into())
+        share(self.held.into(), self.unique_truths.into())
     }
 
     pub(super) fn unique_share(&self) -> Option<f64> {
-        share(self.sums.unique.into(), self.sums.moments.into())
+        share(self.unique.into(), self.moments.into())
     }
 
     fn root_mean(&self, squares: f64) -> Option<f64> {
-        let truths = self.sums.truths;
-        (truths > 0).then(|| (squares / f64::from(truths)).sqrt())
+        (self.truths > 0).then(|| (squares / f64::from(self.truths)).sqrt())
+    }
+
+    fn add(&mut self, moment: &Moment, said: &Said) {
+        self.tally.add(moment, said);
+        self.moments += 1;
+        self.unique += u32::from(said.is_unique());
+        let Some((m, deg)) = said.off else { return };
+        let is_given_up = self.was_right && !said.is_unique() && m <= RIGHT.0;
+        self.false_alarms += u64::from(is_given_up);
+        self.was_right = said.is_right();
+        if m <= LOSS.0 && deg <= LOSS.1 {
+            self.truths += 1;
+            self.squares_m += m * m;
+            self.squares_deg += deg * deg;
+            self.max_m = self.max_m.max(m);
+        }
+        if said.is_unique() && !said.is_off() {
+            self.unique_truths += 1;
+            self.held += u32::from(is_in_ellipse(moment, said));
+        }
     }
 
     /// Adds another drive, without its moments.
@@ -74,15 +90,14 @@ impl Followed {
         self.false_alarms += other.false_alarms;
         self.hours += other.hours;
         self.tracking_ms.extend(&other.tracking_ms);
-        let (all, more) = (&mut self.sums, &other.sums);
-        all.moments += more.moments;
-        all.unique += more.unique;
-        all.truths += more.truths;
-        all.squares_m += more.squares_m;
-        all.squares_deg += more.squares_deg;
-        all.max_m = all.max_m.max(more.max_m);
-        all.unique_truths += more.unique_truths;
-        all.held += more.held;
+        self.moments += other.moments;
+        self.unique += other.unique;
+        self.truths += other.truths;
+        self.squares_m += other.squares_m;
+        self.squares_deg += other.squares_deg;
+        self.max_m = self.max_m.max(other.max_m);
+        self.unique_truths += other.unique_truths;
+        self.held += other.held;
     }
 }
 
@@ -109,7 +124,7 @@ pub(super) fn evaluate(
             Some(false) => 0,
             None => off_for,
         };
-        all.tally.add(moment, &said);
+        all.add(moment, &said);
         all.said.push((index, said));
         if puts_back
             && off_for == LOSS_TRUTHS
@@ -124,32 +139,7 @@ pub(super) fn evaluate(
         (last.stamp_ns - moments[first].stamp_ns) as f64 / 3.6e12
     });
     all.tracking_ms = run.tracking_ms;
-    sum_up(&mut all, moments);
     Ok(all)
-}
-
-fn sum_up(all: &mut Followed, moments: &[Moment]) {
-    let (mut sums, mut was_right) = (Sums::default(), false);
-    for &(index, said) in &all.said {
-        sums.moments += 1;
-        sums.unique += u32::from(said.is_unique());
-        let Some((m, deg)) = said.off else { continue };
-        if was_right && !said.is_unique() && m <= super::run::RIGHT.0 {
-            all.false_alarms += 1;
-        }
-        was_right = said.is_right();
-        if m <= LOSS.0 && deg <= LOSS.1 {
-            sums.truths += 1;
-            sums.squares_m += m * m;
-            sums.squares_deg += deg * deg;
-            sums.max_m = sums.max_m.max(m);
-        }
-        if said.is_unique() && !said.is_off() {
-            sums.unique_truths += 1;
-            sums.held += u32::from(is_in_ellipse(&moments[index], &said));
-        }
-    }
-    all.sums = sums;
 }
 
 fn is_in_ellipse(moment: &Moment, said: &Said) -> bool {

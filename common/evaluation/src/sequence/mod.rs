@@ -14,7 +14,6 @@ mod options;
 mod run;
 mod starts;
 mod stress;
-mod trajectory;
 
 pub(crate) use command::evaluate;
 pub(crate) use errors::{Errors, Samples};

@@ -8,9 +8,9 @@ use engine::tracking::TrackingConfig;
 use map::OccupancyGrid;
 use offline::Options;
 
+use super::course;
 use super::limits::SequenceLimits;
 use super::stress::Stress;
-use super::trajectory;
 use crate::outcomes::ReportOptions;
 use crate::truths::TruthOptions;
 
@@ -96,7 +96,7 @@ impl SequenceOptions {
                 .with_context(|| format!("cannot make the folder {}", folder.display()))?;
         }
         let (lines, drawn): (&[&str], Vec<String>) = match &self.stress {
-            None => (&trajectory::ENDINGS, vec![".png".to_owned()]),
+            None => (&course::ENDINGS, vec![".png".to_owned()]),
             Some(stress) => {
                 let variants = stress.variants().into_iter();
                 (
