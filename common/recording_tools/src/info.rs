@@ -167,7 +167,7 @@ impl Contents {
         if let Some(damage) = &self.damage {
             writeln!(
                 text,
-                "\ndamaged: {damage}; what is listed here lies before that"
+                "\ndamaged: {damage}; all that is listed here comes before it"
             )?;
         }
         Ok(())

@@ -88,7 +88,7 @@ fn widened(rows: [f64; 9]) -> Result<Covariance, GatewayError> {
     is_sound.then_some(covariance).ok_or_else(|| {
         GatewayError::Refused(
             "the covariance of the initial pose is none: allowed are finite, symmetric and positive \
-             ones, and zeros where nobody knows"
+             ones, and zeros for what is unknown"
                 .to_owned(),
         )
     })
