@@ -10,8 +10,9 @@ mod drives;
 #[path = "../shared/mod.rs"]
 mod shared;
 
+use std::fs::File;
 use std::process::Command;
-use std::sync::atomic::{AtomicU32, Ordering};
+use std::sync::Mutex;
 
 use bytemuck::Zeroable;
 use messages::{
@@ -45,14 +46,24 @@ const MOUNT: [&str; 2] = ["--mount", "0.78,0,0"];
 /// Number of beams of a scan.
 const BEAMS: usize = 720;
 
-/// Returns a domain that no other test of this process uses, away from those that people use. Two
-/// processes have the same ones only if their ids are equal modulo 8.
+/// Returns a domain that no other test uses, of this process or of another, away from those that
+/// people use. A lock on a file holds it until this process ends.
 fn domain() -> String {
-    static NEXT: AtomicU32 = AtomicU32::new(0);
-    let number = NEXT.fetch_add(1, Ordering::Relaxed);
+    static CLAIMED: Mutex<Vec<File>> = Mutex::new(Vec::new());
+    let folder = std::env::temp_dir().join("backcast-test-domains");
+    std::fs::create_dir_all(&folder).unwrap();
     // The ports of DDS end at domain 232.
-    assert!(number < 16, "{number} domains are in use");
-    (101 + 16 * (std::process::id() % 8) + number).to_string()
+    let (domain, file) = (101..=232)
+        .map(|domain| {
+            (
+                domain,
+                File::create(folder.join(domain.to_string())).unwrap(),
+            )
+        })
+        .find(|(_, file)| file.try_lock().is_ok())
+        .expect("a domain that no test uses");
+    CLAIMED.lock().unwrap().push(file);
+    domain.to_string()
 }
 
 /// Joins a robot to a gateway in a domain of their own; returns `None` if ROS is not available.
