@@ -52,15 +52,13 @@ fn domain() -> String {
     static CLAIMED: Mutex<Vec<File>> = Mutex::new(Vec::new());
     let folder = std::env::temp_dir().join("backcast-test-domains");
     std::fs::create_dir_all(&folder).unwrap();
+    let claim = |domain: u32| {
+        let file = File::create(folder.join(domain.to_string())).unwrap();
+        file.try_lock().ok().map(|()| (domain, file))
+    };
     // The ports of DDS end at domain 232.
     let (domain, file) = (101..=232)
-        .map(|domain| {
-            (
-                domain,
-                File::create(folder.join(domain.to_string())).unwrap(),
-            )
-        })
-        .find(|(_, file)| file.try_lock().is_ok())
+        .find_map(claim)
         .expect("a domain that no test uses");
     CLAIMED.lock().unwrap().push(file);
     domain.to_string()
